@@ -28,7 +28,15 @@ from coeflab.core.options import bounded, parse_options
 from coeflab.core.types import Array
 from coeflab.fits.results.fit_result import FitResult, LeftOut, Sensitivity, Sweep, independent, result_of
 from coeflab.fits.rows.straight_runs import resistance
-from coeflab.fits.rows.sweeps import FEWEST_SETTINGS, INCIDENCE, arm_shift, collect_points, one_size, sweep_rows
+from coeflab.fits.rows.sweeps import (
+    FEWEST_SETTINGS,
+    INCIDENCE,
+    STALLED,
+    arm_shift,
+    collect_points,
+    one_size,
+    sweep_rows,
+)
 from coeflab.fits.statistics import origin_slope, slopes
 from coeflab.fits.statistics.diagnostics import levels
 from coeflab.fits.statistics.many_rows import condensed_rows, images
@@ -80,6 +88,18 @@ def _within(limit: float, points: _Points) -> _Points:
     """The points up to the largest setting; the others are left out."""
     inside = np.abs(points[0]) <= limit
     return _kept(points, inside, {int(i): "beyond largest_angle" for i in np.flatnonzero(~inside)})
+
+
+def _before_stall(rows: SweepRows, variable: str, length: float, points: _Points) -> _Points:
+    """The points up to where the force across the flow falls again with the angle; those beyond belong to another flow."""
+    across = {"v": "Y", "w": "Z"}.get(variable, "")
+    if across not in rows.table.forces:
+        return points
+    x, y, *_ = collect_points(rows, across, length, np.zeros(len(rows.table)))
+    low, high = slopes.before_stall(x, y)
+    margin = 1.0 + 1e-5  # settings are compared as they were rounded
+    inside = (points[0] >= low * margin) & (points[0] <= high * margin)
+    return _kept(points, inside, dict.fromkeys(np.flatnonzero(~inside).tolist(), STALLED))
 
 
 def _kept(points: _Points, keep: NDArray[np.bool_], why: Mapping[int, str]) -> _Points:
@@ -154,7 +174,7 @@ def _sweep(
     target = "x" if parity == "odd" else "1" if symbol.endswith("0") else "x2"
     is_angle = variable in ("v", "w")
     limit = float(np.sin(np.radians(options.largest_angle))) * (1.0 + slopes.SAME_LEVEL) if is_angle else np.inf
-    every = _within(limit, collect_points(rows, component, length, taken_out))
+    every = _before_stall(rows, variable, length, _within(limit, collect_points(rows, component, length, taken_out)))
     plane, (x, y, se, labels, far), bias, withdrawn = _by_symmetry(rows, variable, parity, every)
     odd = bool(plane) and parity == "odd"
     if (

@@ -36,6 +36,7 @@ TURNED_APART = 0.02
 GOES_ALONG = 0.9  # correlation with a setting: a coupled rudder, not a second measurement
 VARIED = frozenset(SETTINGS) - {"speed"}  # which alone make no sweep
 FROUDE = 1.5
+REYNOLDS = frozenset({"re", "reynolds", "reynoldsnumber"})
 MACH = 1.2  # of what may still be water or a slow wind tunnel
 
 
@@ -58,7 +59,7 @@ def proposals(
     taken: dict[str, str] = {}
     turned = _turned_wind(raw.columns)
     pure = {folded(c.name) for c in raw.columns if c.unit in PURE} & {*vocabulary().coefficients, *vocabulary().several}
-    names = {named_as(c.name).partition(" ")[0] for c in raw.columns}
+    names = {named_as(c.name).partition(" ")[0] for c in raw.columns} | {folded(c.name) for c in raw.columns} & REYNOLDS
     for column in raw.columns:
         if column.name in turned:
             one = Proposal("ignore", TURNED_WIND, note=TURNED_WIND)
@@ -197,7 +198,7 @@ def _of_company(
     ):
         return Proposal("ignore", PROPELLER)
     if "cd" in pure and column.unit in PURE and column.name.strip() in ("M", "N") and known.size:
-        is_mach = one.text[0] == "M" and known.min() > 0.0 and known.max() < MACH
+        is_mach = one.text[0] == "M" and known.min() > 0.0 and (known.max() < MACH or REYNOLDS & names)
         if is_mach or (one.text[0] == "N" and known.min() >= 1.0 and np.all(known == np.round(known))):
             what = "a Mach number" if is_mach else "a count"
             note = f"{what} by its values beside coefficients; {one.text[0]} [{OPEN}] if it is the moment"
@@ -264,15 +265,18 @@ def _without_strangers(raw: RawTable, out: list[Proposal]) -> list[Proposal]:
 
 def _counted(name: str) -> str:
     """A name of a series without its number: Cp_ of Cp_017; of others the name itself."""
-    return re.sub(r"(?<=[A-Za-z_ ])\d+$", "", name.strip())
+    return re.sub(r"(?<=[A-Za-z_ ])[\d.]+$", "", name.strip())
 
 
 def _is_of_a_force(name: str, names: Set[str]) -> bool:
-    """Whether a name is that of a force of the table with a letter or words behind it: Cza beside Cz, Fx_visc beside Fx, Ma beside M."""
+    """Whether a name is that of a force of the table with a letter or words behind it: Cza beside Cz, Fx_visc beside Fx, Ma beside M,
+    Cl_fine beside Cl_exp.
+    """
     own = re.split(r"(?<=[a-z0-9])(?=[A-Z_ ])|[_ ]", name.strip())[0]
-    return any(
-        own in (base, f"{base}{own[-1:]}") and base != name.strip() for base in names if named_as(base) in FORCES
-    )
+    forces = {base: named_as(base) for base in names if base != name.strip()}
+    bases = {base for base, force in forces.items() if force in FORCES}
+    beside = any(base.startswith(f"{own}_") and forces[base] == named_as(own) for base in bases)
+    return beside or not bases.isdisjoint({own, own[:-1]})
 
 
 def _like_a_setting(values: Array, settings: Sequence[Array]) -> bool:

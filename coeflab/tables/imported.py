@@ -28,7 +28,7 @@ from coeflab.tables.evidence import SLENDER
 from coeflab.tables.force_table import ForceTable
 from coeflab.tables.importers.csv import read as read_house
 from coeflab.tables.levels import levels_of
-from coeflab.tables.mapping import Assigned, doubtful, mapped_table, row_name, texts_of, usable_rows
+from coeflab.tables.mapping import Assigned, doubtful, mapped_table, row_name, texts_of, usable_rows, without_a_setting
 from coeflab.tables.raw_table import HALF_MODEL, RawTable
 from coeflab.tables.settings import ARM_POINT, CONFIRMED, EACH, OF_ARMS, REFERENCE, SECTIONS, Settings
 from coeflab.tables.words.points import POINT_OF
@@ -212,7 +212,8 @@ def _how_obtained(table: Filled) -> str:
     how = f"Imported from {table.raw.path.name} by coeflab {VERSION}, importer {table.importer}"
     named = ", ".join(f"{name} = {given}" for name, given in table.mapping.items() if given.name != "ignore")
     of = f"{table.file}: " * bool(table.name)
-    return f"{of}{how}{f' ({dialect})' if dialect else ''}. Columns: {named}"
+    rows = "".join(f". Rows {words}" for words in without_a_setting(table.raw, table.columns))
+    return f"{of}{how}{f' ({dialect})' if dialect else ''}. Columns: {named}{rows}"
 
 
 def _constants(table: Filled, common: Settings) -> dict[str, float]:
@@ -280,7 +281,10 @@ def _campaign_text(
     result = ", ".join(t.file for t in tables)
     lines = [f"# What the numbers in {result} mean. Made by `coeflab import` from {one_line(source.name)}."]
     for t in tables:
-        lines += [f"# {one_line(f'{t.name}: ' * bool(t.name) + remark)}" for remark in t.raw.remarks]
+        lines += [
+            f"# {one_line(f'{t.name}: ' * bool(t.name) + remark)}"
+            for remark in (*t.raw.remarks, *without_a_setting(t.raw, t.columns))
+        ]
     every: list[tuple[str, Mapping[str, Any], Mapping[str, str]]] = [
         (name, keys, {k: comments.get(f"{name}.{k}", "") for k in keys}) for name, keys in sections.items()
     ]
@@ -313,7 +317,7 @@ def _table(
     raw: RawTable, columns: Sequence[Assigned], settings: Settings, constants: Mapping[str, float]
 ) -> tuple[bytes, list[str]]:
     """The table in coeflab's names and the file's units, all digits; and the names of its label columns."""
-    rows = usable_rows(columns, len(raw))
+    rows = usable_rows(raw, columns)
     length = quantity(settings["scaling.length"].value, "length")
     speed = next(
         (c.values for c in columns if c.said.role == "speed"), quantity(settings["conditions.speed"].value, "speed")

@@ -14,10 +14,13 @@ from coeflab.tables.column_map import PROPELLER
 from coeflab.tables.evidence import Evidence
 from coeflab.tables.force_table import AT_REST
 from coeflab.tables.levels import APART, MOST_LEVELS, SHARE, levels_of, slopes_by_level
-from coeflab.tables.mapping import Assigned
+from coeflab.tables.mapping import Assigned, at_higher_mach
 from coeflab.tables.raw_table import RawColumn, RawTable
+from coeflab.tables.vocabulary import folded, vocabulary
 
-SWEPT = {"beta": "YN", "v": "YN", "r": "YN", "alpha": "ZM", "w": "ZM", "q": "ZM", "dr": "YN", "ds": "ZM", "db": "ZM"}
+SHOWN = 5  # levels in a warning
+LEVEL, UPRIGHT = ("Y", "N", "side"), ("Z", "M", "lift")  # forces of motions in the horizontal and in the vertical plane
+SWEPT = dict.fromkeys(("beta", "v", "r", "dr"), LEVEL) | dict.fromkeys(("alpha", "w", "q", "ds", "db"), UPRIGHT)
 
 
 def slopes_by_idle_columns(raw: RawTable, columns: Sequence[Assigned]) -> Iterator[Evidence]:
@@ -31,18 +34,23 @@ def slopes_by_idle_columns(raw: RawTable, columns: Sequence[Assigned]) -> Iterat
     settings = {c.said.name: c for c in columns if c.said.name in SWEPT and not c.said.error}
     speed = next((c.values for c in columns if c.said.role == "speed"), None)
     used = {c.column.name for c in columns if c.said.name not in ("label", "point", "uncertain", *PROPELLER)}
+    mach = at_higher_mach(raw, columns)[0]
+    if mach:
+        yield Evidence(f"rows above the lowest {mach} are left out, as a prime holds at one; {mach}=label takes all")
+    used |= {mach, *(c.name for c in raw.columns if c.is_text and vocabulary().columns.get(folded(c.name)) == "ignore")}
     for idle in (c for c in raw.columns if c.name not in used and not c.means):
         names, codes = np.unique(idle.texts, return_inverse=True) if idle.is_text else ((), idle.values)
-        if _has_levels(numbers := replace(idle, values=codes.astype(float)), speed):
+        most = max(len(names) + 1, MOST_LEVELS)  # words are levels however many they are
+        if _has_levels(numbers := replace(idle, values=codes.astype(float)), speed, most):
             yield from _by_column(numbers, [*names], settings, columns, speed)
 
 
-def _has_levels(column: RawColumn, speed: Array | None) -> bool:
+def _has_levels(column: RawColumn, speed: Array | None, most: int) -> bool:
     """Whether a column has a few levels, other than those of the speed, each of hardly any width: a result of the rows has none."""
     if not np.all(np.isfinite(column.values)) or not len(column.values):
         return False
     own = levels_of(column.values)
-    if not 1 <= own.max() < MOST_LEVELS:
+    if not 1 <= own.max() < most:
         return False
     if max(np.ptp(column.values[own == k]) for k in range(own.max() + 1)) > APART * np.abs(column.values).max():
         return False
@@ -65,13 +73,15 @@ def _by_column(
         alone = np.logical_and.reduce([*others, np.ones(len(idle.values), dtype=bool)])
         for force in (c for c in columns if c.said.role == "force" and c.said.name in SWEPT[name]):
             y = force.values if force.said.pure or speed is None else force.values / speed**2
-            found = slopes_by_level(swept.values[alone], y[alone], idle.values[alone])
-            if found is not None and found.depends:
+            found = slopes_by_level(swept.values[alone], y[alone], idle.values[alone], max(len(names), MOST_LEVELS))
+            if found is not None and (found.depends or found.offsets > SHARE):
                 levels = [str(names[round(v)]) if len(names) else f"{v:.6g}" for v in found.levels]
+                kind, size = ("slope", found.spread) if found.depends else ("offset", found.offsets)
                 given = words(Finding.of(
-                    "levels.column", "table", Severity.WARN, statistic=found.spread, threshold=SHARE, symbol=f"the slope of {force.said.name} over {name}",
+                    "levels.column", "table", Severity.WARN, statistic=size, threshold=SHARE, symbol=f"the {kind} of {force.said.name} over {name}", kind=kind,
                     advice=f'--map "{idle.name}=label", then select = {{ "{idle.name}" = "{levels[0]}" }} in campaign.toml',
-                    slopes=tuple(f"{s:.3g}" for s in found.slopes), levels=tuple(v if len(names) else f"{float(v):.4g}" for v in levels), column=idle.name,
+                    slopes=tuple(f"{s:.3g}" for s in found.slopes[:SHOWN]), column=idle.name,
+                    levels=tuple(v if len(names) else f"{float(v):.4g}" for v in levels[:SHOWN]),
                 ))  # fmt: skip
                 yield Evidence(f"warning: {given.statement}. {given.advice}")
                 return

@@ -33,12 +33,15 @@ class LevelSlopes:
         Largest less smallest slope, of the largest.
     probability : float
         Of so large a difference by the scatter of the rows alone.
+    offsets : float
+        Largest less smallest force at no setting, of the largest force, where scatter alone would not give it; else 0.
     """
 
     levels: tuple[float, ...]
     slopes: tuple[float, ...]
     spread: float
     probability: float
+    offsets: float
 
     @property
     def depends(self) -> bool:
@@ -62,19 +65,21 @@ def levels_of(values: Array) -> NDArray[np.intp]:
     return out
 
 
-def slopes_by_level(x: Array, y: Array, level: Array) -> LevelSlopes | None:
+def slopes_by_level(x: Array, y: Array, level: Array, most: int = MOST_LEVELS) -> LevelSlopes | None:
     """Slopes of y over x at each level, and whether one would do; None with fewer than two levels of three settings.
 
     Parameters
     ----------
     x, y, level : (n,) arrays
         Setting, primed force, and what should not matter.
+    most : int
+        Levels.
     """
     sound = np.isfinite(x) & np.isfinite(y) & np.isfinite(level)
     x, y, level = x[sound], y[sound], level[sound]
     group = levels_of(level)
     selected = [g for g in np.unique(group) if np.unique(np.round(x[group == g], 9)).size >= FEWEST]
-    if not 2 <= len(selected) <= MOST_LEVELS:
+    if not 2 <= len(selected) <= most:
         return None
     reaches = sorted((x[group == g].min(), x[group == g].max()) for g in selected)
     if all(low > before for (_, before), (low, _) in pairwise(reaches)):  # levels that follow x are no other setting
@@ -87,21 +92,28 @@ def slopes_by_level(x: Array, y: Array, level: Array) -> LevelSlopes | None:
     shape = [x / reach, x * np.abs(x) / reach**2] if curved else [x / reach]
     each = np.column_stack([own, *(own * s[:, None] for s in shape)])
     one = np.column_stack([own, *shape])
-    (full, beta), (common, _) = _left(each, y), _left(one, y)
+    (full, beta), (common, law), (level_free, _) = (
+        _left(a, y) for a in (each, one, np.column_stack([one[:, -len(shape) :], own.sum(1)]))
+    )
     k = len(selected)
-    freedom = len(y) - each.shape[1]
     slopes = beta[k : 2 * k] / reach
     noise = max(full, len(y) * (DIGITS * float(np.max(np.abs(y)))) ** 2 / 3.0)
-    probability = 1.0
-    if freedom > 0 and noise > 0.0:
-        from scipy.special import fdtrc
-
-        tested = each.shape[1] - one.shape[1]
-        probability = float(fdtrc(tested, freedom, max(common - full, 0.0) / tested / (noise / freedom)))
+    probability = _by_scatter(common - full, each.shape[1] - one.shape[1], noise, len(y) - each.shape[1])
+    apart = float(np.ptp(law[:k])) / (float(np.max(np.abs(y))) or 1.0)
+    is_apart = _by_scatter(level_free - common, k - 1, max(common, noise), len(y) - one.shape[1]) < SIGNIFICANCE
     largest = float(np.max(np.abs(slopes)))
     spread = float(np.ptp(slopes)) / largest if largest > 0.0 else 0.0
     at = tuple(float(np.mean(level[group == g])) for g in range(k))
-    return LevelSlopes(at, tuple(map(float, slopes)), spread, probability)
+    return LevelSlopes(at, tuple(map(float, slopes)), spread, probability, apart * is_apart)
+
+
+def _by_scatter(gained: float, terms: int, left: float, freedom: int) -> float:
+    """The probability that terms of no meaning take so much off the sum of squares that is left."""
+    if freedom <= 0 or left <= 0.0:
+        return 1.0
+    from scipy.special import fdtrc
+
+    return float(fdtrc(terms, freedom, max(gained, 0.0) / terms / (left / freedom)))
 
 
 def _left(design: Array, y: Array) -> tuple[float, Array]:

@@ -32,8 +32,10 @@ from coeflab.tables.column_map import (
 from coeflab.tables.columns import Columns
 from coeflab.tables.force_table import ForceTable
 from coeflab.tables.importers import IMPORTERS
+from coeflab.tables.levels import APART
 from coeflab.tables.raw_table import RawColumn, RawTable
 from coeflab.tables.to_frd import BLANK, SAME_DENSITY, force_table, speed_of_rows
+from coeflab.tables.vocabulary import folded, vocabulary
 from coeflab.tables.words.axes import BODY_AXES
 
 SETTINGS = ("angle", "velocity", "control", "speed", "radius", "density")
@@ -42,6 +44,7 @@ ALL = "all"
 NO_FORCE = "no force column"
 MARKS = re.compile(r"[*!?#\u2020\u2021x]{1,3}\)?")  # of a row that somebody doubts
 MOST_NAMED = 20
+INCOMPRESSIBLE = 0.3  # Mach number up to which a prime does not depend on it
 SAME_VISCOSITY = 1e-2  # relative: by less than a degree of temperature
 
 
@@ -224,14 +227,34 @@ def with_unit(raw: RawTable, column: RawColumn, said: ColumnMap) -> Assigned:
     return Assigned(column, replace(said, unit=unit), sign * size / (said.ship**0.5 or 1.0))
 
 
-def usable_rows(columns: Sequence[Assigned], rows: int) -> NDArray[np.int64]:
-    """Rows with a number in every setting."""
+def usable_rows(raw: RawTable, columns: Sequence[Assigned]) -> NDArray[np.int64]:
+    """Rows with a number in every setting, and of several Mach numbers those of the lowest."""
     blank = [_lacking(one) for one in columns if one.said.role in SETTINGS]
-    return np.flatnonzero(~np.logical_or.reduce([np.zeros(rows, dtype=bool), *blank]))
+    return np.flatnonzero(~np.logical_or.reduce([at_higher_mach(raw, columns)[1], *blank]))
+
+
+def at_higher_mach(raw: RawTable, columns: Sequence[Assigned]) -> tuple[str, NDArray[np.bool_]]:
+    """The column of a Mach number, where nobody uses it, and the rows above `INCOMPRESSIBLE`, else above its lowest level.
+
+    A prime holds at one Mach number; rows of several in one sweep would give a slope of none of them.
+
+    Parameters
+    ----------
+    raw : RawTable
+    columns : sequence of Assigned
+    """
+    used = {one.column.name for one in columns}
+    for one in (c for c in raw.columns if c.name not in used and len(c.values)):
+        mach = np.nan_to_num(one.values)
+        lowest = max(INCOMPRESSIBLE, float(mach.min()) * (1.0 + APART))
+        by_levels = one.name.strip() == "M" and mach.min() > 0.0 and np.unique(mach).size <= len(mach) / 2
+        if np.any(mach > lowest) and (by_levels or folded(one.name) in vocabulary().lists["mach"]):
+            return one.name, mach > lowest
+    return "", np.zeros(len(raw), dtype=bool)
 
 
 def without_a_setting(raw: RawTable, columns: Sequence[Assigned]) -> Iterator[str]:
-    """Rows without a setting, in a sentence for each column that lacks it."""
+    """Rows without a setting, in a sentence for each column that lacks it, and those of higher Mach numbers."""
     for one in columns:
         if one.said.role not in SETTINGS:
             continue
@@ -239,6 +262,9 @@ def without_a_setting(raw: RawTable, columns: Sequence[Assigned]) -> Iterator[st
         if blank.size:
             above = " above zero" * (one.said.role == "speed" and not np.all(np.isnan(one.values[blank])))
             yield f"left out, no {one.column.name}{above}: {places(raw, blank)}"
+    mach, higher = at_higher_mach(raw, columns)
+    if mach:
+        yield f'left out, above the lowest {mach}: {places(raw, np.flatnonzero(higher))}; --map "{mach}=label" takes all'
 
 
 def _lacking(one: Assigned) -> NDArray[np.bool_]:
@@ -269,7 +295,7 @@ def texts_of(column: RawColumn) -> list[str]:
 
 
 def _columns(raw: RawTable, known: Sequence[Assigned], campaign: Campaign) -> Columns:
-    rows = usable_rows(known, len(raw))
+    rows = usable_rows(raw, known)
     if not rows.size:
         raise input_error("tables.no_row_with_settings", raw.path)
     given: dict[str, dict[str, Array]] = {r: {} for r in (*SETTINGS, "error", "force", "propeller")}
@@ -432,7 +458,7 @@ def mapped_table(raw: RawTable, campaign: Campaign, table: TableDeclaration) -> 
         raise why
     columns = _columns(raw, known, campaign)
     out = force_table(columns, campaign, table)
-    rows = usable_rows(known, len(raw))
+    rows = usable_rows(raw, known)
     written = {one.said.name: one for one in known if one.said.role == "force" and one.column.texts}
     exclusions = tuple(
         replace(e, reason=e.reason.replace(BLANK, _found(written.get(e.component), int(rows[e.row]))))

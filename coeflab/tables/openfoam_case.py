@@ -254,7 +254,7 @@ def rotating_frame(case: FoamCase, wanted: str, body: set[str], known: Mapping[s
             continue
         zone = next(iter(case.listed(part, "cellZone") or case.listed(part, "cellSet")), "")
         share = _share_of_mesh(case, zone) if zone else None
-        stands = body & covered(_still_patches(case, part), known)
+        stands = body & covered(case.listed(part, "nonRotatingPatches"), known)
         rotor = (
             "as the option rotation says so" if wanted == "none"
             else "" if wanted == "body"
@@ -277,10 +277,6 @@ def rotating_frame(case: FoamCase, wanted: str, body: set[str], known: Mapping[s
     if len(out) > 1:
         raise input_error("tables.several_rotating_frames", case.root / "constant/MRFProperties", count=len(out))
     return out[0] if out else None
-
-
-def _still_patches(case: FoamCase, part: Foam) -> list[str]:
-    return case.listed(part, "nonRotatingPatches")
 
 
 def _frame(case: FoamCase, part: Foam, speeds: Foam, what: str) -> Frame:

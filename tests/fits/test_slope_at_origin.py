@@ -13,6 +13,7 @@ from coeflab.core.finding import Severity
 from coeflab.core.table import Check
 from coeflab.fits import FITS, slope_at_origin
 from coeflab.fits.results.fit_result import FitResult, Sweep
+from coeflab.fits.rows.sweeps import STALLED
 from coeflab.fits.statistics import slopes
 from coeflab.fits.statistics.origin_slope import estimate
 from coeflab.fits.statistics.slope_mixture import estimate_many
@@ -418,3 +419,27 @@ def test_a_fixed_form_over_one_radius_shows_a_secant_and_recommends_nothing(
     shown = next(s for s in model.symbols if s.startswith("Yr"))
     assert model.named(shown)[0] == pytest.approx(0.004 + 0.01 * 0.3, rel=1e-3)
     assert sum("(a secant) and is not determined" in s for s in model.statements) == 1
+
+
+def test_rows_past_a_stall_are_left_out_with_a_word() -> None:
+    """Synthetic wing to 90 degrees: X0' is the drag at rest, and a check says how many rows are beyond."""
+    degrees = np.arange(-90.0, 91.0, 5.0)
+    angle, inside = np.radians(degrees), np.abs(degrees) <= 15.0
+    lift = np.where(inside, 4.0 * np.sin(angle), np.sin(2.0 * angle))
+    drag = 0.02 + np.where(inside, 0.0, 1.9) * np.sin(angle) ** 2
+    table = small_table(degrees.tolist())
+    table = replace(table, motion={**table.motion, "u": 1.5 * np.abs(np.cos(angle))})
+    size = 0.5 * 1000.0 * 1.5**2 * LENGTH.length**2
+    forces = {
+        "Y": -size * (lift * np.cos(angle) + drag * np.sin(angle)),
+        "X": size * (lift * np.sin(angle) - drag * np.cos(angle)),
+    }
+    used = {c: np.ones(len(angle), dtype=bool) for c in forces}
+    table = replace(table, forces=forces, usable=used, exclusions=())
+    fit = slope_at_origin.fit([table], LENGTH, {})
+    assert fit.sweep("Yv").window == pytest.approx(np.radians([-15.0, 15.0]), abs=1e-6)
+    assert STALLED in {p.reason for p in fit.sweep("X0").left_out}
+    assert fit.coefficients["X0"].value == pytest.approx(-0.02, rel=0.05)
+    assert fit.coefficients["Yv"].value == pytest.approx(-4.02, rel=0.02)
+    study = replace(small_study(ANGLES), fits=(fit,), tables=(table,))
+    assert sum("past stall" in str(c.statistic) for c in warnings(study)) == 1

@@ -75,3 +75,38 @@ def test_rest_and_curvature_of_few_and_of_very_many_rows(rows: int) -> None:
     rest, curvature = slopes.rest_and_curvature(x, -0.5 + 2.0 * x - 3.0 * x**2)
     assert rest == pytest.approx(-0.5, rel=1e-2)
     assert curvature == pytest.approx(-3.0, rel=5e-2)
+
+
+def stalled(degrees: Array, at: float) -> Array:
+    """Synthetic lift of a thin wing to its stall, then that of a plate."""
+    return np.where(
+        np.abs(degrees) <= at, 2.0 * np.pi * np.sin(np.radians(degrees)), 1.1 * np.sin(2.0 * np.radians(degrees))
+    )
+
+
+@pytest.mark.parametrize(("degrees", "at", "ends"), [
+    (np.arange(-90.0, 91.0, 5.0), 15.0, (-15.0, 15.0)), (np.arange(0.0, 41.0, 1.0), 12.0, (-np.inf, 12.0)),
+    (np.arange(-6.0, 31.0, 2.0), 14.0, (-np.inf, 14.0)), (np.arange(-12.0, 13.0, 2.0), 14.0, (-np.inf, np.inf)),
+])  # fmt: skip
+@pytest.mark.parametrize("rest", [0.0, 0.4, -0.4])
+def test_a_sweep_ends_at_its_stall(degrees: Array, at: float, ends: tuple[float, float], rest: float) -> None:
+    """Rows to 90 and 180 degrees bent X0' to a thrust; a camber moves the force at rest, not the stall."""
+    x = np.sin(np.radians(degrees))
+    low, high = slopes.before_stall(np.repeat(x, 2), np.repeat(-rest - stalled(degrees, at), 2))
+    assert np.degrees(np.arcsin(np.clip([low, high], -1.0, 1.0))) == pytest.approx(np.clip(ends, -90.0, 90.0), abs=1e-3)
+
+
+@pytest.mark.parametrize("shape", [lambda x: x, lambda x: x * np.abs(x), lambda x: x + 3.0 * x**3])
+@pytest.mark.parametrize("noise", [0.0, 0.01, 0.05])
+@pytest.mark.parametrize("n", [5, 13, 61])
+def test_no_stall_is_seen_in_scatter(shape: object, noise: float, n: int) -> None:
+    """A bluff body's cross flow rises up to 90 degrees; scatter of a dense sweep is no fall: one false alarm in a hundred at most."""
+    x = np.sin(np.radians(np.linspace(-90.0, 90.0, n)))
+    chance = np.random.default_rng(1)
+    y = shape(x)  # type: ignore[operator]
+    found = [slopes.before_stall(x, y + noise * np.abs(y).max() * chance.standard_normal(n)) for _ in range(200)]
+    assert sum(ends != (-np.inf, np.inf) for ends in found) <= 2
+
+
+def test_nothing_has_no_stall() -> None:
+    assert slopes.before_stall(np.empty(0), np.empty(0)) == (-np.inf, np.inf)

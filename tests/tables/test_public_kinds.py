@@ -19,7 +19,7 @@ from coeflab.tables.column_names import named_as
 from coeflab.tables.form import Group
 from coeflab.tables.imported import _table
 from coeflab.tables.level_columns import slopes_by_idle_columns
-from coeflab.tables.mapping import assigned, without_a_setting
+from coeflab.tables.mapping import assigned, usable_rows, without_a_setting
 from coeflab.tables.parts import read_parts
 from coeflab.tables.raw_table import RawColumn, RawTable
 from coeflab.tables.reading import importer_of, read_raw
@@ -432,3 +432,94 @@ def test_a_standard_error_goes_with_its_force(tmp_path: Path) -> None:
         tmp_path / "t.csv", lines("alpha [deg],Z [N],se_Z [N],se_M [N*m]", rows=["-4,8,1,1", "0,0,1,1", "4,-8,1,1"])
     )
     assert (found["se_Z"], found["se_M"]) == ("se_Z [N]", "ignore")
+
+
+def polar_over_mach(machs: tuple[float, ...]) -> list[str]:
+    """Synthetic: lift that grows with the Mach number, at five angles each."""
+    return [f"{m},{a},{0.1 * a * (1 + m)},{0.02 + m / 10}" for m in machs for a in ANGLES]
+
+
+@pytest.mark.parametrize(
+    ("machs", "rows"), [((0.1, 0.25, 0.8, 2.0), 10), ((0.5, 0.8, 2.0), 5), ((0.1, 0.2), 10), ((0.8,), 5)]
+)
+def test_rows_of_several_mach_numbers_are_not_pooled(tmp_path: Path, machs: tuple[float, ...], rows: int) -> None:
+    """Mach .01 to 25 gave one X0' beside a warning about single rows: those up to .3 count, else those of the lowest."""
+    (tmp_path / "t.csv").write_text(lines("Mach,alpha,CL,CD", rows=polar_over_mach(machs)))
+    raw = read_raw(tmp_path / "t.csv", "table")
+    columns = (
+        ("Mach", "ignore"),
+        ("alpha", "alpha [deg]"),
+        ("CL", "lift [coefficient A=1 m^2]"),
+        ("CD", "drag [coefficient A=1 m^2]"),
+    )
+    known = assigned(raw, {n: read_column_map(t) for n, t in columns})
+    assert len(usable_rows(raw, known)) == rows
+    said = list(without_a_setting(raw, known))
+    assert [s.startswith("left out, above the lowest Mach: line") for s in said] == [True] * (rows < len(raw))
+    shown = [e.text for e in slopes_by_idle_columns(raw, known)]
+    assert [s.startswith("rows above the lowest Mach are left out") for s in shown if "Mach" in s] == [True] * (
+        rows < len(raw)
+    )
+    labelled = assigned(raw, {n: read_column_map("label" if n == "Mach" else t) for n, t in columns})
+    assert len(usable_rows(raw, labelled)) == len(raw), "whoever names it takes all"
+
+
+def test_an_import_says_which_mach_numbers_its_rows_have(tmp_path: Path) -> None:
+    (tmp_path / "t.csv").write_text(lines("Mach,alpha,CL,CD", rows=polar_over_mach((0.2, 0.9))))
+    given = ("coefficients.area=1 m^2", "axes.frame=FRD", "scaling.length=1 m")
+    found = CliRunner().invoke(
+        app, ["import", str(tmp_path / "t.csv"), "--out", str(tmp_path / "o"), *(w for g in given for w in ("--set", g)), "--accept"]
+    )  # fmt: skip
+    assert found.exit_code == 0, found.output
+    assert "Rows left out, above the lowest Mach: line 7" in found.output
+    text = (tmp_path / "o" / "campaign.toml").read_text()
+    assert text.count("above the lowest Mach") == 2, (
+        "beside the table, and in how_obtained, which travels with each number"
+    )
+    slope = next(line.split()[2] for line in found.output.splitlines() if line.split()[:1] == ["Zw'"])
+    assert float(slope) == pytest.approx(-(0.1 * 1.2 * 180.0 / np.pi + 0.04), rel=0.01)
+    assert "rows of several Mach" not in found.output
+
+
+def test_bodies_named_in_a_column_are_no_single_body(tmp_path: Path) -> None:
+    """Four airfoils in one sweep gave one slope without a word: same slopes, lift at rest apart, and more names than levels of a setting."""
+    names = [f"n{k:04d}" for k in range(12)]
+    rows = [f"{n},{a},{0.1 * a + 0.3 * (k % 3)},0.02" for k, n in enumerate(names) for a in ANGLES]
+    (tmp_path / "t.csv").write_text(lines("file,alpha,CL,CD", rows=rows))
+    raw = read_raw(tmp_path / "t.csv", "table")
+    by = {
+        "file": "label",
+        "alpha": "alpha [deg]",
+        "CL": "lift [coefficient A=1 m^2]",
+        "CD": "drag [coefficient A=1 m^2]",
+    }
+    said = [e.text for e in slopes_by_idle_columns(raw, assigned(raw, {n: read_column_map(t) for n, t in by.items()}))]
+    assert len(said) == 1
+    assert "the offset of lift over alpha differs between file n0000" in said[0]
+    one = [f"{n},{a},{0.1 * a + 0.3},0.02" for n in names for a in ANGLES]
+    (tmp_path / "u.csv").write_text(lines("file,alpha,CL,CD", rows=one))
+    raw = read_raw(tmp_path / "u.csv", "table")
+    assert not list(slopes_by_idle_columns(raw, assigned(raw, {n: read_column_map(t) for n, t in by.items()})))
+
+
+def test_strange_columns_of_a_public_table_are_no_questions(tmp_path: Path) -> None:
+    """Sources side by side, moments about a dozen points, limits of transition: eleven, five and seven questions."""
+    grids = [f"{a},{cl},{cd},{0.9 * cl},{cd},{0.8 * cl},{cd}" for a, cl, cd, _ in POLAR]
+    found = texts(tmp_path / "a.csv", lines("alpha_deg,Cl_fine,Cd_fine,Cl_coarse,Cd_coarse,Cl_exp,Cd_exp", rows=grids))
+    assert {n for n, t in found.items() if t == "ignore"} == {"Cl_fine", "Cd_fine", "Cl_coarse", "Cd_coarse"}
+    points = [f"{a},{cl},{cd},{-0.1 * cl},{0.1 * cl},{0.3 * cl},{0.5 * cl}" for a, cl, cd, _ in POLAR]
+    found = texts(tmp_path / "b.csv", lines("AoA (deg),Cl,Cd,cm_x0.00,cm_x0.16,cm_x0.32,cm_x0.48", rows=points))
+    assert [t for n, t in found.items() if n.startswith("cm_x")] == ["ignore"] * 4
+    found = texts(
+        tmp_path / "c.csv",
+        lines(
+            "Alpha,Cd,Cl,XTr1,XTr2,Cpmn", rows=[f"{a},{cd},{cl},{0.1 - a / 99},{a / 99},{a}" for a, cl, cd, _ in POLAR]
+        ),
+    )
+    assert [found[n] for n in ("XTr1", "XTr2", "Cpmn")] == ["ignore"] * 3
+
+
+def test_m_beside_a_reynolds_number_is_a_mach_number(tmp_path: Path) -> None:
+    rows = [f"{a},{cl},{cd},{5 + k},{1000 * k}" for k, (a, cl, cd, _) in enumerate(POLAR, 1)]
+    assert texts(tmp_path / "a.csv", lines("alpha,Cl,Cd,M,Re", rows=rows))["M"] == "ignore"
+    assert texts(tmp_path / "b.csv", lines("alpha,Cl,Cd,M,time", rows=rows))["M"] == "M [?]"

@@ -16,6 +16,7 @@ EACH_ROW = 80
 NEIGHBOURS = 41
 SETTINGS, NODES = 41, 9
 ROUNDS, TUKEY, FREEDOM = 6, 4.685, 60.0
+SMALLEST = 1e-100  # spread of equal readings; its square is still a number
 ROUNDING, LEVEL = 1e-12, 0.02  # share of clean campaigns in which a row is left out
 
 
@@ -60,7 +61,7 @@ def by_neighbours(x: Array, y: Array) -> Neighbours:
     width = np.maximum(np.abs(u - x[order][:, None]).max(1), np.finfo(float).tiny)
     t = (u - x[order][:, None]) / width[:, None]
     middle = np.median(v, axis=1, keepdims=True)
-    size = np.maximum(np.abs(v - middle).max(1), np.finfo(float).tiny)
+    size = np.maximum(np.abs(v - middle).max(1), SMALLEST)
     z = (v - middle) / size[:, None]
     powers = np.stack([np.ones_like(t), t, t * t])  # (3, n, m)
     weight = np.ones_like(t)

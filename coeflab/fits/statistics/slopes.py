@@ -64,6 +64,8 @@ EVEN = (
     Family("{x}^2 + |{x}|^3", ("1", "x2", "|x|3")),
 )
 SAME_LEVEL = 0.02
+# Of a peak; standard deviations, counted from `DENSE` settings of a side on, as fewer are farther apart than scatter; settings up to it.
+FALLEN, SCATTERS, DENSE, FEWEST_BEFORE = 0.1, 7.0, 6, 3
 
 
 def design(terms: tuple[str, ...], x: Array) -> Array:
@@ -153,6 +155,38 @@ def windows(x: Array, largest: float) -> list[tuple[float, Index]]:
         rows = np.flatnonzero(level <= k)
         out.append((float(size[rows].max()), rows))
     return out
+
+
+def before_stall(x: Array, y: Array) -> tuple[float, float]:
+    """The settings below and above zero, (low, high), beyond which a force across the flow falls again; infinite where it does not.
+
+    The means of the settings of a side rise to their first peak of a third of the largest; later they fall from it by `FALLEN`, and by
+    more than scatter, before any is higher.
+
+    Parameters
+    ----------
+    x, y : (n,) arrays
+        Setting and force.
+
+    Examples
+    --------
+    >>> before_stall(np.array([-10.0, -5.0, 0.0, 5.0, 10.0, 15.0, 20.0]), np.array([-1.0, -0.5, 0.0, 0.5, 1.0, 1.2, 0.7]))
+    (-inf, 15.0)
+    """
+    if not len(x):
+        return -np.inf, np.inf
+    ends = []
+    middle = float(np.median(y[np.abs(x) <= np.min(np.abs(x)) + 1e-9]))
+    for side in (-1.0, 1.0):
+        at, group = np.unique(np.round(side * x[side * x > 0.0], 6), return_inverse=True)
+        size = np.abs(np.bincount(group, y[side * x > 0.0]) / np.bincount(group) - middle)
+        bent = np.diff(size, 2)
+        noise = SCATTERS * 1.4826 * float(np.median(np.abs(bent))) / np.sqrt(6.0) if len(size) >= DENSE else 0.0
+        highest = np.maximum.accumulate(size)
+        fallen = (highest - size > np.maximum(FALLEN * highest, noise)) & (highest > size.max(initial=0.0) / 3.0)
+        peak = int(np.argmax(size[: int(np.argmax(fallen)) + 1])) if np.any(fallen) else 0
+        ends.append(side * (float(at[peak]) if peak >= FEWEST_BEFORE - 1 else np.inf))
+    return ends[0], ends[1]
 
 
 def by_row(slope: OriginSlope, term: int) -> Array:

@@ -9,7 +9,7 @@ import numpy as np
 
 from coeflab.core.finding import Severity
 from coeflab.core.table import Check, as_check
-from coeflab.fits.rows.sweeps import FEWEST_SETTINGS
+from coeflab.fits.rows.sweeps import FEWEST_SETTINGS, STALLED
 from coeflab.fits.rows.too_few import FEW_ROWS
 from coeflab.fits.statistics.diagnostics import replicate_groups
 from coeflab.fits.statistics.least_squares import factorise, solve
@@ -54,6 +54,15 @@ def _sides(s: Sweep) -> Check | None:
     if min(-low, high) < 0.5 * max(-low, high):
         return Check.of("coverage.uneven", subject, Severity.NOTE, low=low, high=high)
     return None
+
+
+def _stalled(s: Sweep) -> Check | None:
+    """Rows past a peak of the force across the flow, which no slope uses."""
+    beyond = [p.x for p in s.left_out if p.reason == STALLED]
+    if not beyond:
+        return None
+    least = min(map(abs, beyond))
+    return Check.of("coverage.stalled", f"{s.table} {s.variable}'", Severity.WARN, n=len(beyond), least=least)
 
 
 def _extrapolation(s: Sweep, tables: Sequence[ForceTable]) -> Check | None:
@@ -147,6 +156,8 @@ def check(study: Study) -> Sequence[Check]:
             out.append(_points(s, f.coefficients[s.symbol].status))
             if s.by_symmetry:  # a copy has the findings of its source
                 continue
-            found = [c for c in (_sides(s), _extrapolation(s, study.tables)) if c is not None] + replicates(s, groups)
+            found = [
+                c for c in (_sides(s), _stalled(s), _extrapolation(s, study.tables)) if c is not None
+            ] + replicates(s, groups)
             out += [c for c in found if c not in out]
     return out
