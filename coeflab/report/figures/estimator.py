@@ -22,6 +22,7 @@ from coeflab.report.figures.palette import COLOURS, power_of_ten, recoloured
 from coeflab.report.figures.panel import BOTTOM, TOP, drawing, legend, panel
 from coeflab.report.figures.svg import settings, strokes, svg_text
 from coeflab.report.notation import as_users_wrote
+from coeflab.report.texts import text_of
 from coeflab.vehicle.reference import Comparison
 
 SIDESTEP = 0.011
@@ -54,7 +55,7 @@ def estimator_figure(sweep: Sweep, published: tuple[Comparison, ...], anchor: st
         Re-analyses of this coefficient, drawn as lines.
     anchor : str
     """
-    frame = _frame(sweep, published)
+    frame = frame_of(sweep, published)
     factor, power = power_of_ten(max(abs(f) for f in frame))
     name = primed(sweep.symbol)
     drawn = _drawn(sweep)
@@ -108,11 +109,6 @@ def draw_forms(
     return at
 
 
-def frame_of(sweep: Sweep, published: tuple[Comparison, ...] = ()) -> tuple[float, float]:
-    """Range of values that `draw_forms` shows."""
-    return _frame(sweep, published)
-
-
 def _drawn(sweep: Sweep) -> list[_Drawn]:
     out = []
     for family, style in series.styles(sweep).items():
@@ -138,7 +134,7 @@ def _inside(sweep: Sweep, d: _Drawn, x: Array, frame: tuple[float, float]) -> Se
     return series.points(d.key, d.name, x[selected], d.value[selected], notes, groups)
 
 
-def _frame(sweep: Sweep, published: tuple[Comparison, ...]) -> tuple[float, float]:
+def frame_of(sweep: Sweep, published: tuple[Comparison, ...] = ()) -> tuple[float, float]:
     """Range of values shown: the recommendation and the published values in full, the rest as it fits."""
     known = [e.value for e in sweep.forms]
     middle = sweep.value if sweep.value is not None else float(np.median(known)) if known else 0.0
@@ -223,7 +219,11 @@ def _description(sweep: Sweep, published: tuple[Comparison, ...]) -> str:
     spread = [e.value for e in sweep.forms]
     forms = f"; single forms from {coefficient(min(spread))} to {coefficient(max(spread))}" if spread else ""
     there = "".join(f"; published {coefficient(c.published)}" for c in published)
-    return (
-        f"{len(spread)} estimates of {primed(sweep.symbol)} by single forms against the largest motion used. "
-        f"Recommended: {value}{forms}{there}."
+    return text_of(
+        "estimator_figure.description",
+        spread=len(spread),
+        symbol=primed(sweep.symbol),
+        value=value,
+        forms=forms,
+        there=there,
     )
