@@ -118,6 +118,11 @@ class ComparedTable:
         """Whether every row does."""
         return all(r.holds for r in self.rows)
 
+    @property
+    def within(self) -> str:
+        """How many rows hold, of how many."""
+        return f"{sum(r.holds for r in self.rows)} of {len(self.rows)}"
+
 
 @dataclass(frozen=True, slots=True)
 class Acceptance:
@@ -337,10 +342,7 @@ WORST_NOTE = f"{WORST}: the largest difference in % of its tolerance; of a limit
 
 def overview(found: Acceptance) -> Table:
     """One row a table of the publication."""
-    rows = tuple(
-        (t.title, t.source, f"{sum(r.holds for r in t.rows)} of {len(t.rows)}", _closest(t.rows), _verdict(t.rows))
-        for t in found.tables
-    )
+    rows = tuple((t.title, t.source, t.within, _closest(t.rows), _verdict(t.rows)) for t in found.tables)
     notes = (WORST_NOTE,)
     headers = ("what", "in the publication", "within", WORST, "verdict")
     return Table("Tables of the publication", headers, rows, notes, frozenset({0, 1, 4}))

@@ -14,7 +14,6 @@ from matplotlib.patches import Patch
 from coeflab.core.table import coefficient, plus_minus
 from coeflab.core.types import Array
 from coeflab.fits.results.fit_result import Sweep
-from coeflab.fits.statistics.slopes import Estimate
 from coeflab.law.symbols import primed
 from coeflab.report.document import Figure, Series
 from coeflab.report.figures import series
@@ -113,7 +112,7 @@ def _drawn(sweep: Sweep) -> list[_Drawn]:
     out = []
     for family, style in series.styles(sweep).items():
         mine = [e for e in sweep.forms if e.family.name == family]
-        halves = [_half(e) for e in mine]
+        halves = [e.half_hc2 if np.isfinite(e.half_hc2) else 0.0 for e in mine]
         notes = tuple(f"± {coefficient(h)}, {len(e.rows)} points" for e, h in zip(mine, halves, strict=True))
         window, value = (np.array([getattr(e, which) for e in mine]) for which in ("window", "value"))
         key, name = series.family_key(sweep, mine[0]), series.family_name(sweep, mine[0])
@@ -144,10 +143,6 @@ def frame_of(sweep: Sweep, published: tuple[Comparison, ...] = ()) -> tuple[floa
     wanted = max(inner, min(float(np.quantile(close, 0.9)), 2.5 * inner) if close and inner else 0.0)
     half = 1.12 * wanted or max(close, default=0.0) or abs(middle) or 1.0
     return middle - half, middle + half
-
-
-def _half(e: Estimate) -> float:
-    return e.half_hc2 if np.isfinite(e.half_hc2) else 0.0
 
 
 def _recommended(

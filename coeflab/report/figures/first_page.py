@@ -423,7 +423,7 @@ def shares_figure(found: Acceptance) -> Figure:
     words = "; ".join(f"{t.title}: {s:.2f}" for t, s in zip(found.tables, found_largest, strict=True))
     across = (0.0, max(1.05, 1.05 * float(largest.max(initial=0.0))))
     with settings():
-        counts = [f"{sum(r.holds for r in t.rows)} of {len(t.rows)}" for t in found.tables]
+        counts = [t.within for t in found.tables]
         right = 12.0 + max(text_width(count, SIZE) for count in counts)
         names = [_cut(t.title, 0.93 * (WIDTH - INSET - right)) for t in found.tables]
         figure, axes = _drawing(

@@ -53,11 +53,11 @@ def allowance_figure(found: Acceptance, anchor: str) -> Figure:
     rows = [r for t in found.tables for r in t.rows]
     held = sum(r.holds for r in rows)
     title = f"{held} of {len(rows)} comparisons within the tolerance"
-    heights = [_height(len(t.rows)) for t in found.tables]
+    heights = [min(max(LEAST, ROW * len(t.rows)), MOST) for t in found.tables]
     body = sum(heights) + HEAD * len(heights)
     description = (
         "One strip a table, one mark a number at its difference over the tolerance: "
-        + "; ".join(f"{t.title}: {_count(t)}" for t in found.tables)
+        + "; ".join(f"{t.title}: {t.within}" for t in found.tables)
         + "."
     )
     with settings():
@@ -74,19 +74,11 @@ def allowance_figure(found: Acceptance, anchor: str) -> Figure:
     return Figure(anchor, svg, title, text_of("acceptance.caption"), description, tuple(panels))
 
 
-def _height(count: int) -> float:
-    return min(max(LEAST, ROW * count), MOST)
-
-
-def _count(t: ComparedTable) -> str:
-    return f"{sum(r.holds for r in t.rows)} of {len(t.rows)}"
-
-
 def _heading(figure: Drawing, top: float, t: ComparedTable) -> None:
     name = t.title if len(t.title) <= LONGEST else t.title[:LONGEST].rsplit(" ", 1)[0].rstrip(",") + " …"
     level = (top - HEAD + 4.0) / height_of(figure)
     figure.text(INDENT / WIDTH, level, name, va="baseline", fontsize=8.25)
-    figure.text((WIDTH - RIGHT) / WIDTH, level, _count(t), va="baseline", ha="right", color=COLOURS["muted"])
+    figure.text((WIDTH - RIGHT) / WIDTH, level, t.within, va="baseline", ha="right", color=COLOURS["muted"])
 
 
 def _axes(figure: Drawing, bottom: float, height: float, up: tuple[float, float]) -> Axes:

@@ -341,7 +341,7 @@ def budget_sections(study: Study) -> tuple[Section, ...]:
         )
         for i, b in enumerate(wanted)
     )
-    return (Section("budget", "Uncertainty budget", text, _filled(tables), subsections=parts),)
+    return (Section("budget", "Uncertainty budget", text, filled(*tables), subsections=parts),)
 
 
 def tow_sections(study: Study) -> tuple[Section, ...]:
@@ -368,9 +368,9 @@ def tow_sections(study: Study) -> tuple[Section, ...]:
         t for one in with_values
         for t in (own_cfd.own_tow(one), *(() if one.tow.campaign in judged else (own_cfd.tow_against(one),)))
     )  # fmt: skip
-    rest = _filled(tuple(own_cfd.own_tow(one) for one in found if one not in with_values))
+    rest = filled(*(own_cfd.own_tow(one) for one in found if one not in with_values))
     more = (Section("no-tow", "Own CFD without a value", tables=rest, appendix=True),) if rest else ()
-    return (Section("own-tows", "Own CFD", text, _filled(tuple(each)), subsections=more),)
+    return (Section("own-tows", "Own CFD", text, filled(*each), subsections=more),)
 
 
 def _nothing(found: Towed) -> str:
@@ -378,7 +378,3 @@ def _nothing(found: Towed) -> str:
     reasons = "; ".join(dict.fromkeys(r.why for r in found.rows if r.why))
     missing = listed(list(dict.fromkeys(r.missing for r in found.rows if r.missing)))
     return f"{found.tow.name}: {missing or 'no value'}{f', as {reasons}' if reasons else ''}."
-
-
-def _filled(tables: tuple[Table, ...]) -> tuple[Table, ...]:
-    return tuple(t for t in tables if t.rows)

@@ -304,17 +304,19 @@ def answer_of_shape(study: Study, *, drawn: bool = True) -> Answer:
     )
     if not drawn:
         return result
-    first = next(iter(study.manoeuvres), None)
-    left = (
-        track_figures(first.trajectory, "answer-track", first.vehicle.length, f", {_how(first)}")[0]
-        if first is not None
-        else None
-    )
+    left = _track(study.manoeuvres)
     of, mass = shape.weighed, shape.weighed.configuration.mass
     is_stated = mass is not None and "centre" not in of.assumed
     gravity = of.body.reference_point + mass.centre_of_gravity if mass is not None and is_stated else None
     outline = hull_figure(of.body, "answer-body", COLUMN, gravity)
     return replace(result, slope=left, forest=shares_figure(parameters, shape.carried, "answer-shares"), axes=outline)
+
+
+def _track(moves: Sequence[Simulation]) -> Figure | None:
+    """Of the first manoeuvre, where there is one."""
+    for first in moves:
+        return track_figures(first.trajectory, "answer-track", first.vehicle.length, f", {_how(first)}")[0]
+    return None
 
 
 def _missing(missing: Sequence[str]) -> str:
@@ -440,12 +442,7 @@ def answer_of_merge(made: Merged, moves: Sequence[Simulation], carried: Sequence
         Chip("Estimates left", str(left), Severity.NOTE, "coefficients"),
         Chip("First manoeuvre", turn or "no interval", Severity.NOTE, "manoeuvres"),
     )
-    first = next(iter(moves), None)
-    left_figure = (
-        track_figures(first.trajectory, "answer-track", first.vehicle.length, f", {_how(first)}")[0]
-        if first is not None
-        else None
-    )
+    left_figure = _track(moves)
     right = forest_figure(rows, (BEFORE,), BEFORE) or forest_figure(rows, (BEFORE,), "")
     note = f"{BEFORE}: the value that was replaced, of the base. Made dimensionless with {p.scaling.length_name} = {p.scaling.length:.5g} m."
     return Answer(words[:LONGEST], (BEFORE,), "", tuple(rows), chips, left_figure, right, None, (note,))

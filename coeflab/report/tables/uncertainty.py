@@ -183,7 +183,7 @@ def sentences_on_open(names: Iterable[str], *, what: str = "Not in U95") -> list
     """
     left = list(dict.fromkeys(names))
     read = [n.removeprefix("error of ") for n in left if n in READ]
-    words = [f"errors of {listed(read)}"] * bool(read) + [n for n in left if n not in READ]
+    words = [*([f"errors of {listed(read)}"] if read else []), *(n for n in left if n not in READ)]
     return [f"{what}: {'; '.join(words)}."] if words else []
 
 
