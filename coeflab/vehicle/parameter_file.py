@@ -450,7 +450,7 @@ def read_parameter_file(path: Path) -> ParameterFile:
     refuse_shape(path)
     text = read_text(path, JSON_BYTES)
     if kind := model_kind(text):
-        raise input_error("vehicle.simulator_model", file=path, kind=kind, path=path)
+        raise input_error("vehicle.simulator_model", file=path, simulator=kind, path=path)
     content = parse_json(text, path, "a parameter file in JSON")
     if not isinstance(content, dict):
         raise InputError(f"a {type(content).__name__}", "an object", file=path, column="file")
