@@ -87,7 +87,7 @@ class AddedMass(law.AddedMass):
         >>> cf.read_body("remus100").added_mass("ellipsoid").plot().get_title()
         'remus100 by ellipsoid'
         """
-        from coeflab.report.plots.matrix import plot_added_mass
+        from coeflab.report.plots import plot_added_mass
 
         return plot_added_mass(self, ax)
 
@@ -232,7 +232,7 @@ class Body(plain.Body):
         >>> cf.read_body("remus100").plot().get_xlabel()
         'x [m]'
         """
-        from coeflab.report.plots.body import plot_body
+        from coeflab.report.plots import plot_body
 
         return plot_body(self, view, ax)
 

@@ -100,7 +100,7 @@ class Comparison(plain.Comparison):
         >>> len(cf.compare("remus100", "remus100").plot().get_yticklabels()) > 1
         True
         """
-        from coeflab.report.plots.forest import plot_forest
+        from coeflab.report.plots import plot_forest
 
         both = [r for r in self.rows if r.a is not None and r.b is not None]
         return plot_forest([(r.symbol, [(r.a, r.u95_a), (r.b, r.u95_b)]) for r in both], (self.a, self.b), ax)

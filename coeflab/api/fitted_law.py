@@ -154,7 +154,7 @@ class FittedLaw:
         >>> import coeflab as cf
         >>> _ = cf.fit("suboff_roddy_2", "polynomial", variable="beta", degree=2).laws["X'"].plot()
         """
-        from coeflab.report.plots.model import plot_along
+        from coeflab.report.plots import plot_along
 
         return plot_along(self.model, variable, ax)
 

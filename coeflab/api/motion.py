@@ -142,7 +142,7 @@ class Motion(Mapping[str, Figure]):
         >>> cf.simulate("remus100", "zigzag", rudder="20 deg").plot().get_xlabel()
         'east [m]'
         """
-        from coeflab.report.plots.motion import plot_motion
+        from coeflab.report.plots import plot_motion
 
         return plot_motion(self.trajectory, what, ax)
 

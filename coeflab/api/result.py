@@ -342,7 +342,7 @@ class Result(Mapping[str, Coefficient]):
     def _plot_tied(self, symbol: str, ax: Axes | None) -> Axes | None:
         """The law of a term that is tied to a slope, over the points of that slope; None of any other coefficient."""
         from coeflab.law.terms import read_term
-        from coeflab.report.plots.slope import plot_tied
+        from coeflab.report.plots import plot_tied
 
         c = self[symbol]
         tied = next((f for f in self.fits if f.tied is not None and c in f.coefficients.coefficients), None)
@@ -413,21 +413,21 @@ class Result(Mapping[str, Coefficient]):
         if symbol is None and not len(self):
             raise InputError("no coefficient", f"one of {', '.join(self.laws) or 'no law'}", column="symbol")
         if isinstance(symbol, str) and (runs := self._straight(symbol)) is not None:
-            from coeflab.report.plots.resistance import plot_straight_runs
+            from coeflab.report.plots import plot_straight_runs
 
             return plot_straight_runs(runs, ax)
         if isinstance(symbol, str):
             if not any(f.sweeps for f in self.fits):
-                from coeflab.report.plots.model import plot_model
+                from coeflab.report.plots import plot_model
 
                 self[symbol]
                 return plot_model([m for f in self.fits for m in f.models], symbol, ax)
             if (drawn := self._plot_tied(symbol, ax)) is not None:
                 return drawn
-            from coeflab.report.plots.slope import plot_forms, plot_slope
+            from coeflab.report.plots import plot_forms, plot_slope
 
             return (plot_forms if kind else plot_slope)(self._sweep(symbol), ax)
-        from coeflab.report.plots.forest import plot_forest
+        from coeflab.report.plots import plot_forest
 
         named = [self[s] for s in symbol] if symbol is not None else [c for c in self._all() if c.value is not None]
         return plot_forest([(primed(c.symbol.removesuffix("'")), [(c.value, c.u95)]) for c in named], (), ax)

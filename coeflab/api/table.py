@@ -81,7 +81,7 @@ class Table(ForceTable):
         >>> cf.read_table("suboff_roddy_2").plot("Y").get_ylabel()
         'Y [N]'
         """
-        from coeflab.report.plots.table import plot_table
+        from coeflab.report.plots import plot_table
 
         return plot_table(self, component, over, ax)
 

@@ -5,6 +5,7 @@ Nouns that show themselves in a line.
 
 from __future__ import annotations
 
+import dataclasses
 from collections.abc import Callable, Collection, Mapping
 from dataclasses import fields, is_dataclass
 from enum import Enum
@@ -12,7 +13,7 @@ from functools import partial, wraps
 from hashlib import sha256
 from pathlib import Path
 from types import MappingProxyType
-from typing import Any, ParamSpec, TypeVar
+from typing import TYPE_CHECKING, Any, ParamSpec, TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -112,6 +113,21 @@ def brief(cls: type[Noun]) -> type[Noun]:
     """
     cls.__repr__ = _in_a_line  # type: ignore[method-assign]
     return cls
+
+
+if TYPE_CHECKING:
+    from dataclasses import dataclass as dataclass  # noqa: PLC0414
+else:
+
+    def dataclass(**look: bool) -> Callable[[type[Noun]], type[Noun]]:
+        """Like the standard library's, and brief unless the class has a ``repr`` of its own."""
+
+        def decorated(cls: type[Noun]) -> type[Noun]:
+            own = "__repr__" in vars(cls)
+            noun = dataclasses.dataclass(**look)(cls)
+            return noun if own else brief(noun)
+
+        return decorated
 
 
 def in_angles(noun: object, said: str) -> str:

@@ -23,6 +23,8 @@ from typing import TypeVar
 from coeflab.core.text.bounded import own_text
 
 Item = TypeVar("Item", bound=Hashable)
+Key = TypeVar("Key", bound=Hashable)
+Value = TypeVar("Value")
 
 
 class Verbatim(str):
@@ -86,6 +88,26 @@ def grouped(parts: Sequence[str], room: int, join: Callable[[Sequence[str]], str
         else:
             groups.append([part])
     return groups
+
+
+def collected(pairs: Iterable[tuple[Key, Value]]) -> dict[Key, list[Value]]:
+    """The values of each key, keys and values in the order in which they come."""
+    out: dict[Key, list[Value]] = {}
+    for key, value in pairs:
+        out.setdefault(key, []).append(value)
+    return out
+
+
+def counted(n: int, one: str, several: str = "") -> str:
+    """``1 row``, ``2 rows``.
+
+    Parameters
+    ----------
+    n : int
+    one, several : str
+        The noun, and its plural where that is not made by an s.
+    """
+    return f"{n} {one if n == 1 else several or f'{one}s'}"
 
 
 def repeated(items: Iterable[Item]) -> list[Item]:

@@ -25,6 +25,7 @@ import numpy as np
 
 from coeflab.core.errors import InputError
 from coeflab.core.options import measured, one_of, parse_options
+from coeflab.core.texts import input_error
 from coeflab.core.types import Array
 from coeflab.core.wording import finite
 from coeflab.fits.results.fit_result import FitResult, result_of
@@ -120,10 +121,7 @@ def _over_effective(rows: Rows, powers: Sequence[int], chosen: Options, form: st
     """The law as the paper writes it: a listing over the effective angle, whose domain stays delta and alpha."""
     used = replace(rows, x={EFFECTIVE: rows.x[chosen.surface] + _sign(chosen) * rows.x["alpha"], **rows.x})
     if np.ptp(used.x[EFFECTIVE]) <= NEAR_ZERO:
-        raise InputError(
-            f"one effective angle on every row of {rows.campaign}", "several angles of the surface",
-            column="control_surface",
-        )  # fmt: skip
+        raise input_error("fits.one_angle", column="control_surface", campaign=rows.campaign)
     terms = tuple(Term(((EFFECTIVE, n, False),)) if n else Term() for n in powers)
     return model_of(used, terms, tuple(f"{rows.response}{n}" for n in powers), form)
 

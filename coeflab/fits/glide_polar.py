@@ -18,7 +18,7 @@ Coefficients that somebody printed, read from words and held against a fit.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -26,7 +26,8 @@ from numpy.typing import NDArray
 
 from coeflab.core.errors import InputError, shown
 from coeflab.core.options import measured, one_of, parse_options, words
-from coeflab.core.types import brief
+from coeflab.core.texts import input_error
+from coeflab.core.types import dataclass
 from coeflab.fits.results.fit_result import FitResult, result_of
 from coeflab.fits.results.fitted_model import residuals_in_words
 from coeflab.fits.rows.regression import Rows, model_of, variable
@@ -138,7 +139,6 @@ class Options:
     munk: float = measured(0.0, -1e9, 1e9, "mass")
 
 
-@brief
 @dataclass(frozen=True, slots=True)
 class AngleUnit:
     """The unit of a that printed coefficients mean.
@@ -196,8 +196,7 @@ def _rows(tables: Sequence[ForceTable], noise: str) -> dict[str, tuple[Rows, Arr
         squares = [sum((np.square(t.motion[m][i]) for m in LINEAR), np.zeros(len(i))) for t, _, i in parts]
         square = np.concatenate(squares)
         if noise == "stated" and len(known[name]) < len(parts):
-            raise InputError(f"no standard errors of {name}", "columns se_X, se_Z and, with M, se_M", column="glide_polar.noise",
-                             advice="Or noise = square or constant.")  # fmt: skip
+            raise input_error("fits.no_standard_errors", column="glide_polar.noise", name=name)
         weights = {"square": None, "constant": 1.0 / square}
         rows = Rows(
             x={"alpha": np.concatenate([variable(t, "alpha", 1.0)[i] for t, _, i in parts])},
@@ -216,10 +215,7 @@ def _rows(tables: Sequence[ForceTable], noise: str) -> dict[str, tuple[Rows, Arr
 def _check_angles(rows: Rows) -> None:
     """Raise unless there are rows and their angle of attack changes."""
     if not len(rows.y):
-        raise InputError(
-            f"no usable row of {rows.response} in {rows.campaign}", "a sweep of the angle of attack",
-            column="glide_polar",
-        )  # fmt: skip
+        raise input_error("fits.no_usable_row", column="glide_polar", response=rows.response, campaign=rows.campaign)
     if np.ptp(rows.x["alpha"]) <= NEAR_ZERO:
         raise InputError(
             f"one angle of attack, {np.degrees(rows.x['alpha'][0]):.3g} degrees, on every row of {rows.campaign}",

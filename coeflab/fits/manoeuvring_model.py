@@ -12,7 +12,7 @@ Which terms of a manoeuvring model are fitted: those that were named, and those 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -20,7 +20,8 @@ from numpy.typing import NDArray
 
 from coeflab.core.errors import InputError, shown
 from coeflab.core.options import one_of, parse_options, words
-from coeflab.core.types import Array, brief
+from coeflab.core.texts import input_error
+from coeflab.core.types import Array, dataclass
 from coeflab.fits.joint.model import joint_models
 from coeflab.fits.joint.rows import Component, about_one_point, differences, joint_name, joint_rows, measured, moving
 from coeflab.fits.results.fit_result import FitResult, result_of
@@ -44,7 +45,6 @@ from coeflab.law.terms import (
 from coeflab.tables.force_table import AT_REST, ForceTable
 
 
-@brief
 @dataclass(frozen=True, slots=True)
 class AskedTerms:
     """Terms of a fit.
@@ -96,8 +96,7 @@ def asked_terms(
     """
     named = read_terms(tuple(texts), f"{place}.terms")
     if chosen == "none" and not named:
-        raise InputError("no terms", "terms, or a set", column=f"{place}.terms",
-                         advice="For example terms = Yv,Yv|v|,Nv or set = horizontal.")  # fmt: skip
+        raise input_error("fits.no_terms", column=f"{place}.terms")
     unknown = [c for c in components if c not in COMPONENTS]
     if unknown:
         raise InputError(", ".join(unknown), f"some of {', '.join(COMPONENTS)}", column=f"{place}.components")
@@ -120,8 +119,7 @@ def asked_terms(
     fitted = [t for t in fitted if t.component not in alone]
     if not fitted:
         campaigns = joint_name(t.campaign for t in tables)
-        raise InputError(f"no motion of the {chosen} set in {campaigns}", "tables in which one of its motions varies",
-                         column=f"{place}.set", advice="Name the terms, or use the other set.")  # fmt: skip
+        raise input_error("fits.no_motion", column=f"{place}.set", chosen=chosen, campaigns=campaigns)
     own: tuple[str, ...] = ()
     if len({t.campaign for t in tables}) > 1:
         own = tuple(t.component for t in fitted if not t.term.factors and t not in named)
@@ -357,8 +355,7 @@ def _component(
     variables = tuple(dict.fromkeys(v for t in own for v, _, _ in t.term.factors)) or ("u",)
     data = joint_rows(tables, variables, name, length)
     if weighted and data.rows.errors is None:
-        raise InputError(f"no standard errors of {name}", "weights = no", column="manoeuvring_model.weights",
-                         advice="Every usable row needs se_ columns of the component.")  # fmt: skip
+        raise input_error("fits.no_standard_errors_2", column="manoeuvring_model.weights", name=name)
     free = name in asked.own
     return Component(name, own, data.without_campaigns_at_rest() if free else data, own=free).weighed(stated=weighted)
 

@@ -23,6 +23,7 @@ import numpy as np
 
 from coeflab.core.errors import InputError
 from coeflab.core.options import bounded, parse_options
+from coeflab.core.texts import input_error
 from coeflab.core.types import Array
 from coeflab.core.wording import finite
 from coeflab.fits.results.fit_result import FitResult, result_of
@@ -222,9 +223,7 @@ def fit(tables: Sequence[ForceTable], scaling: Scaling, options: Mapping[str, An
             found[o.symbol] = o
             coefficients += _coefficients(o, table)
     if not found and not coefficients:
-        raise InputError(
-            "no run without a mean drift", "runs of one motion about straight ahead", file=series_of[0].name
-        )
+        raise input_error("fits.no_run_without_mean", file=series_of[0].name)
     first, each = series_of[0], tuple(found.values())
     result = result_of(
         "planar_motion", replace(first, reference_point=first.point), scaling, coefficients, _covariance(each, coefficients), citations=citations,

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from coeflab.core.errors import InputError
 from coeflab.core.options import bounded, measured, one_of, parse_options, words
+from coeflab.core.texts import input_error
 from coeflab.fits.results.fit_result import FitResult, independent, result_of
 from coeflab.fits.results.fitted_model import FittedModel, coefficient_of, in_words, residuals_in_words
 from coeflab.fits.rows.regression import ANGLES, Area, collect, model_of
@@ -142,9 +143,7 @@ def fit(tables: Sequence[ForceTable], scaling: Scaling, options: Mapping[str, An
     used, said = only_moving(tables, (chosen.variable,), scaling.length)
     names = chosen.responses or tuple(c for c in COMPONENTS if allowed(used, c, area))
     if not names:
-        raise InputError(
-            f"no usable force in a sweep over {chosen.variable}", "one of X Y Z K M N", column="polynomial.responses"
-        )
+        raise input_error("fits.no_usable_force_sweep", column="polynomial.responses", variable=chosen.variable)
     first = tables[0]
     models, few = each_with_rows(
         tuple(dict.fromkeys(names)), lambda n: _model(allowed(used, n, area) or used, n, terms, area, chosen, said), first.campaign

@@ -20,6 +20,7 @@ from coeflab.core.errors import InputError, shown
 from coeflab.core.limits import REPLICATES
 from coeflab.core.machine import one_thread
 from coeflab.core.options import bounded, one_of, parse_options, words
+from coeflab.core.texts import input_error, text_of
 from coeflab.core.types import Array
 from coeflab.fits.joint.rows import JointRows, joint_rows, measured, moving
 from coeflab.fits.results.fit_result import FitResult, independent, result_of
@@ -143,8 +144,7 @@ def _alike(matrix: Array, y: Array, component: str, terms: Sequence[Term], inter
     """Terms that the rows cannot tell apart, and terms that they do not excite."""
     unit, _, size, _ = scaled(matrix, y, intercept=intercept)
     out = [
-        f"{component}{terms[j].suffix} and {component}{terms[i].suffix} cannot be separated on these rows; the library "
-        f"keeps {component}{terms[i].suffix}."
+        text_of("fits.not_separated", component=component, one=terms[j].suffix, other=terms[i].suffix)
         for j, i in twins(unit).items()
     ]
     flat = [component + t.suffix for t, s in zip(terms, size, strict=True) if s == 0.0]
@@ -178,9 +178,7 @@ def fit(tables: Sequence[ForceTable], scaling: Scaling, options: Mapping[str, An
     tables = counted_once(tables)
     variables = chosen.variables or moving(tables)
     if not variables:
-        raise InputError(
-            "tables in which nothing moves", "a table with a motion that varies", column="sparse.variables"
-        )
+        raise input_error("fits.nothing_moves", column="sparse.variables")
     components = chosen.components or measured(tables)
     if unknown := [c for c in components if c not in COMPONENTS]:
         raise InputError(shown(unknown[0]), f"some of {', '.join(COMPONENTS)}", column="sparse.components")

@@ -14,6 +14,7 @@ import numpy as np
 
 from coeflab.core.errors import InputError, shown
 from coeflab.core.options import bounded, measured, one_of, parse_options, words
+from coeflab.core.texts import input_error
 from coeflab.core.types import Array
 from coeflab.fits.results.fit_result import FitResult, result_of
 from coeflab.fits.results.fitted_model import FittedModel, in_words, residuals_in_words
@@ -99,10 +100,7 @@ def _parities(chosen: Options, name: str) -> dict[str, str]:
             )  # fmt: skip
         if rule == "symmetric":
             if sided != [variable]:
-                raise InputError(
-                    shown(word), "symmetric for the one variable that port-starboard symmetry turns around",
-                    column="surface.parity",
-                )  # fmt: skip
+                raise input_error("fits.symmetric_for_one_variable", column="surface.parity", found=shown(word))
             rule = "odd" if name in ODD_RESPONSES else "even"
         out[variable] = rule
     return out
@@ -258,8 +256,8 @@ def fit(tables: Sequence[ForceTable], scaling: Scaling, options: Mapping[str, An
     """
     chosen = parse_options(Options, sweeps.without_blanks(options, "parity"), "surface")
     if len(set(chosen.variables)) != 2 or len(chosen.variables) != 2:
-        raise InputError(
-            f"the variables {', '.join(chosen.variables) or 'none'}", "two different ones", column="surface.variables"
+        raise input_error(
+            "fits.two_different_ones", column="surface.variables", what=", ".join(chosen.variables) or "none"
         )
     area = sweeps.area_of(chosen.area, chosen.area_name, scaling)
     used, said = sweeps.only_moving(tables, chosen.variables, scaling.length)

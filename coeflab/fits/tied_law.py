@@ -17,7 +17,6 @@ slope's uncertainty is carried (GUM, JCGM 100:2008, 5.2).
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from itertools import chain, product
 from typing import Any
 
@@ -26,7 +25,7 @@ from numpy.typing import NDArray
 
 from coeflab.core.finding import Finding, Severity
 from coeflab.core.options import one_of, parse_options
-from coeflab.core.types import Array, brief
+from coeflab.core.types import Array, dataclass
 from coeflab.core.wording import finite
 from coeflab.fits import FITS
 from coeflab.fits.results.fit_result import FitResult, Sweep, Tied, independent, result_of
@@ -68,7 +67,6 @@ class Options:
     at_rest: str = one_of("law", "law", "apart")
 
 
-@brief
 @dataclass(frozen=True, slots=True, eq=False)
 class _Rows:
     """Rows of one component: primed motions, primed force, which table each row is of."""
@@ -88,7 +86,6 @@ class _Rows:
         return np.abs(self.x[variable]) > AT_REST
 
 
-@brief
 @dataclass(frozen=True, slots=True, eq=False)
 class _Law:
     """Terms of one component beyond the tied ones, as fitted: those of the set-up first, table by table, then the law's."""

@@ -9,6 +9,7 @@ import numpy as np
 
 from coeflab.core.errors import InputError
 from coeflab.core.options import named_numbers
+from coeflab.core.texts import input_error
 from coeflab.core.types import Array
 from coeflab.core.wording import listed
 from coeflab.law.symbols import ANGLE_NAMES, CONTROLS, MOTIONS
@@ -42,10 +43,7 @@ def propulsion(vehicle: Vehicle, speed: float) -> tuple[dict[str, float], str]:
         return {}, f"speed held at {speed:g} m/s; the thrust follows"
     needed = vehicle.resistance(speed)
     if needed <= 0.0:
-        raise InputError(
-            f"a resistance of {needed:g} N at {speed:g} m/s", "a force against the motion, such as X0 or Xu|u|",
-            column="coefficients", advice="Hold the speed: --hold u.",
-        )  # fmt: skip
+        raise input_error("motion.no_resistance", column="coefficients", needed=needed, speed=speed)
     return {THRUST: needed}, f"constant thrust of {needed:.4g} N, for {speed:g} m/s straight ahead"
 
 
@@ -150,17 +148,11 @@ def mirrored(vehicle: Vehicle, orders: Mapping[str, float]) -> dict[str, float]:
         out["dr"] = -orders["dr"]
     tilts = [name for name in orders if name.endswith(".tilt")]
     if tilts:
-        raise InputError(
-            f"an order for {tilts[0]}", "thrusters without tilts, one side against the other", column="commands"
-        )
+        raise input_error("motion.order_for_tilt", column="commands", tilts=tilts[0])
     for t in vehicle.thrusters:
         image = next((o for o in vehicle.thrusters if _images(t, o)), None)
         if image is None:
-            raise InputError(
-                f"the thruster {t.name} without an image on the other side",
-                "thrusters that mirror each other",
-                column="commands",
-            )
+            raise input_error("motion.thruster_without_image", column="commands", name=t.name)
         out[t.name] = orders.get(image.name, 0.0)
     return out
 

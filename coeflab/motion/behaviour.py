@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from coeflab.core.errors import CoeflabError, InputError
-from coeflab.core.types import Array, brief
+from coeflab.core.types import Array, dataclass
 from coeflab.core.wording import listed
 from coeflab.law.force_law import ForceLaw
 from coeflab.law.symbols import COMPONENTS
@@ -41,7 +41,6 @@ PLANES = {
 EQUAL = 1e-9
 
 
-@brief
 @dataclass(frozen=True, slots=True)
 class Behaviour:
     """One figure of two vehicles.

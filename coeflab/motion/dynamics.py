@@ -24,13 +24,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
-from coeflab.core.types import Array, brief
+from coeflab.core.types import Array, dataclass
 from coeflab.law.force_law import SLOWEST, ForceLaw
 from coeflab.law.rigid_body import axes_in_earth, kinematics, weighed
 from coeflab.law.transforms import along_body
@@ -39,7 +39,6 @@ FIRST, SECOND = np.triu_indices(6)
 FLAT = 1e-12
 
 
-@brief
 @dataclass(frozen=True, slots=True, eq=False)
 class Dynamics:
     """What a march needs to know of vehicles.
@@ -304,7 +303,6 @@ def growth(values: NDArray[np.complex128]) -> Growth:
     return "unstable" if largest > 0.0 else "stable"
 
 
-@brief
 @dataclass(frozen=True, slots=True, eq=False)
 class Slopes:
     """Derivatives by extrapolated central differences.

@@ -13,7 +13,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from math import inf
 from pathlib import Path
 from types import MappingProxyType
@@ -24,7 +24,7 @@ from numpy.typing import NDArray
 
 from coeflab.core.cards import html_by
 from coeflab.core.errors import InputError, shown
-from coeflab.core.types import Array, brief, in_angles, locking
+from coeflab.core.types import Array, dataclass, in_angles, locking
 from coeflab.law.force_law import BASE, Ints
 from coeflab.law.symbols import CONTROLS
 from coeflab.motion.trajectory import Trajectory
@@ -48,7 +48,6 @@ QUANTITIES: dict[Quantity, str] = {
 UPRIGHT = (1.0, 0.0, 0.0, 0.0)
 
 
-@brief
 @dataclass(frozen=True, slots=True)
 class Until:
     """A phase ends when a quantity crosses a value, rising or falling.
@@ -67,7 +66,6 @@ class Until:
     value: float
 
 
-@brief
 @dataclass(frozen=True, slots=True)
 class Phase:
     """Orders that stand until something happens.
@@ -94,7 +92,6 @@ class Phase:
         object.__setattr__(self, "orders", MappingProxyType(dict(self.orders)))
 
 
-@brief
 @dataclass(frozen=True, slots=True, eq=False)
 @locking("velocity attitude")
 class Manoeuvre:
@@ -292,7 +289,6 @@ def extremes(time: Array, values: Array) -> Array:
     return np.array(found).reshape(-1, 2)
 
 
-@brief
 @dataclass(frozen=True, slots=True)
 class PlannedManoeuvre:
     """One ``[[manoeuvre]]``: a parameter file of the study, the manoeuvre's name and its options.
@@ -320,7 +316,6 @@ class PlannedManoeuvre:
         return f"{self.place}.{name}"
 
 
-@brief
 @dataclass(frozen=True, slots=True, eq=False)
 class Late:
     """Thrusters that follow their commands with a lag, k of them, of members in phases.
@@ -397,7 +392,6 @@ COMPLETE, NOT_FINITE, TOO_FAST, STEP_TOO_SMALL = range(4)
 NEAR = 1e-9
 
 
-@brief
 @dataclass(frozen=True, slots=True, eq=False)
 class Orders:
     """Orders of p phases.
@@ -443,7 +437,6 @@ class Orders:
         return int(np.ceil(float(np.sum(self.longest)) / step - NEAR))
 
 
-@brief
 @dataclass(frozen=True, slots=True, eq=False)
 class Marching:
     """Motions of m members through p phases.

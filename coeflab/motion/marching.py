@@ -6,7 +6,7 @@ Many vehicles that differ in their numbers alone, marched side by side.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,7 +14,8 @@ from numpy.typing import NDArray
 from coeflab.core.errors import InputError
 from coeflab.core.limits import MOTION_STEPS, require_rows
 from coeflab.core.machine import compiles
-from coeflab.core.types import Array, brief, locked
+from coeflab.core.texts import input_error
+from coeflab.core.types import Array, dataclass, locked
 from coeflab.law.rigid_body import momentum_quadratics, rigid_body_inertia
 from coeflab.law.symbols import CONTROLS
 from coeflab.motion.dynamics import VELOCITY, Dynamics, forms_of_pairs, rates_of_one
@@ -38,7 +39,6 @@ from coeflab.motion.vehicle import Vehicle
 SHAPES = {"coefficients": (0,), "added": (6, 6), "ideal": (6, 6, 6), "mass": (), "centre": (3,), "inertia": (3, 3)}
 
 
-@brief
 @dataclass(frozen=True, slots=True, eq=False)
 class Ensemble:
     """Members of one vehicle.
@@ -89,10 +89,9 @@ class Ensemble:
             object.__setattr__(self, name, array)
         low = np.linalg.eigvalsh((self._free_mass() + self._free_mass().swapaxes(-1, -2)) / 2.0)[:, 0]
         if not np.all(low > 0.0):
-            raise InputError(
-                f"member {int(np.argmin(low)) + 1} with an effective mass of eigenvalue {low.min():g}",
-                "a positive definite one", column="added",
-            )  # fmt: skip
+            raise input_error(
+                "motion.member_mass_not_definite", column="added", member=int(np.argmin(low)) + 1, lowest=low.min()
+            )
 
     @property
     def count(self) -> int:
@@ -196,7 +195,6 @@ WIDER = "Take more time between rows: --record, or a shorter manoeuvre."
 STILL = np.zeros(3)
 
 
-@brief
 @dataclass(frozen=True, slots=True, eq=False)
 class Marched:
     """Motions of all members of an ensemble.
@@ -319,10 +317,7 @@ def march(
         chosen = record / every
     count = duration / chosen
     if count > MOTION_STEPS:
-        raise InputError(
-            f"{count:,.0f} steps of {chosen:.3g} s", f"at most {MOTION_STEPS:,}", column="step",
-            advice="The vehicle is stiff or the manoeuvre long; the adaptive integrator takes longer steps.",
-        )  # fmt: skip
+        raise input_error("motion.too_many_steps", column="step", count=count, chosen=chosen, motion_steps=MOTION_STEPS)
     require_rows(count / every, "record", WIDER)
     if compiled:
         from coeflab.motion.integrators.compiled import march as run
@@ -358,16 +353,11 @@ def _arrays(ensemble: Ensemble, manoeuvres: tuple[Manoeuvre, ...]) -> tuple[Orde
     if len(manoeuvres) not in (1, ensemble.count):
         raise InputError(f"{len(manoeuvres)} manoeuvres", f"one, or one for each of {ensemble.count} members")
     if any(m.others or any(p.medium for p in m.phases) for m in manoeuvres):
-        raise InputError(
-            "a manoeuvre through two media in one march", "one medium: its forces have no break within a step",
-            column="medium", advice="The simulator rigid_body ends a march at the surface.",
-        )  # fmt: skip
+        raise input_error("motion.manoeuvre_through_two_media", column="medium")
     each = [orders_of(ensemble.vehicle, m) for m in manoeuvres]
     for name in ("angles", "begin", "watched", "sign", "value", "longest"):
         if any(not np.array_equal(getattr(o, name), getattr(each[0], name)) for o in each):
-            raise InputError(
-                "manoeuvres whose phases differ", "members that differ in start and thrust alone", column=name
-            )
+            raise input_error("motion.manoeuvres_whose_phases_differ", column=name)
     start = np.zeros((len(manoeuvres), 14))
     start[:, 3:7] = [m.attitude / np.linalg.norm(m.attitude) for m in manoeuvres]
     start[:, 7:13] = [m.velocity for m in manoeuvres]
@@ -385,9 +375,7 @@ def _together(each: Sequence[Late | None]) -> Late:
     """Thrusters with a lag of all members."""
     alike = [late for late in each if late is not None]
     if len(alike) < len(each) or len({late.names for late in alike}) > 1:
-        raise InputError(
-            "thrusters with a lag that change their command in some members", "the same in all", column="lag"
-        )
+        raise input_error("motion.thrusters_with_lag_change", column="lag")
     begin, ordered, levers = (
         np.concatenate([getattr(late, n) for late in alike]) for n in ("begin", "ordered", "levers")
     )
@@ -409,18 +397,13 @@ def _step(ensemble: Ensemble, dynamics: Dynamics, orders: Orders, start: Array, 
     wrench = orders.wrench.reshape(-1, orders.count, 6)[0, 0]
     found = [fast_eigenvalues(dynamics, state, orders.angles[0], wrench, scale) for state in (start.T, ahead)]
     if not np.isfinite(found).all():
-        raise InputError(
-            "rates of the vehicle that are not finite at the start", "finite forces", column="coefficients"
-        )
+        raise input_error("motion.rates_not_finite", column="coefficients")
     most = largest_step(np.array(found))
     fastest = float(np.max(np.abs(found)))
     if orders.late is not None:
         fastest = max(fastest, 1.0 / float(np.min(orders.late.lag)))
     if asked > most:
-        raise InputError(
-            f"a step of {asked:g} s", f"at most {most:.3g} s: the fastest small motion, {fastest:.3g} 1/s, grows beyond that",
-            column="step", advice="Or let the step be chosen (0), or take the adaptive integrator.",
-        )  # fmt: skip
+        raise input_error("motion.step_unstable", column="step", asked=asked, most=most, fastest=fastest)
     if asked > 0.0:
         return asked
     return min(PER_MODE / max(fastest, NEAR), PER_LENGTH * v.length / size, float(np.min(orders.longest)))

@@ -32,13 +32,14 @@ as its restoring moment does not grow with speed.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 
 import numpy as np
 from numpy.typing import NDArray
 
 from coeflab.core.errors import InputError
-from coeflab.core.types import Array, brief, locked
+from coeflab.core.texts import text_of
+from coeflab.core.types import Array, dataclass, locked
 from coeflab.law.symbols import ANGULAR, COMPONENTS, MOTIONS, primed
 from coeflab.motion.approach import along
 from coeflab.motion.dynamics import STEP, from_euler, modes
@@ -213,7 +214,6 @@ SLOWEST = 1e-12
 STILL = 1e-100
 
 
-@brief
 @dataclass(frozen=True, slots=True, eq=False)
 class SteadyTurns:
     """Operating points, one row a pair of thrusts.
@@ -443,7 +443,6 @@ CLOSE = 1e-6  # bisection of a speed at which stability changes
 DRAWN, SHARE_WITHOUT = 1000, 0.025
 
 
-@brief
 @dataclass(frozen=True, slots=True, eq=False)
 class RootLocus:
     """Eigenvalues of one plane over speed.
@@ -595,10 +594,7 @@ def _statement(index: str, has_angle: bool, critical: float | None, speed: Array
     if index == "G_h":
         return "No restoring moment acts on the heading: all roots are proportional to speed, so there is no critical speed."
     if not has_angle:
-        return (
-            "The file states no hydrostatics. The restoring moment of weight and buoyancy (BG) is left out: the roots hold at high speed "
-            "only, and no critical speed can be given."
-        )
+        return text_of("motion.no_hydrostatics")
     if critical is None:
         return f"No root changes the sign of its real part between {speed[0]:.3g} and {speed[-1]:.3g} m/s."
     return f"The least stable root changes the sign of its real part at {critical:.4g} m/s."

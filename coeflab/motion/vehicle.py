@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
 from coeflab.core.errors import InputError, shown
 from coeflab.core.finding import Finding
-from coeflab.core.texts import remark
-from coeflab.core.types import Array, brief, locking
+from coeflab.core.texts import input_error, remark
+from coeflab.core.types import Array, dataclass, locking
 from coeflab.core.units import STANDARD_GRAVITY
 from coeflab.law.force_law import ForceLaw
 from coeflab.law.rigid_body import rigid_body_force, rigid_body_inertia
@@ -26,7 +25,6 @@ PLANES = {"horizontal": ("u", "v", "r"), "vertical": ("u", "w", "q")}
 BALANCED, ONE_POINT = 5e-3, 1e-4  # of the weight and of the length: less is trimmed, or one point
 
 
-@brief
 @dataclass(frozen=True, slots=True, eq=False)
 @locking("centre inertia added")
 class Vehicle:
@@ -227,10 +225,7 @@ def vehicle(
     """
     mass = parameters.mass
     if mass is None:
-        raise InputError(
-            "a parameter file without mass", "mass, centre and inertia", column="mass",
-            advice="Write them into the plan's body.toml, or into the parameter file.",
-        )  # fmt: skip
+        raise input_error("motion.no_mass", column="mass")
     if not mass.mass > 0.0:  # a fit may come here with values that no file has
         raise InputError(f"a mass of {mass.mass:g} kg", "above zero", column="mass")
     strange = [f for f in free if f not in MOTIONS]
@@ -300,10 +295,7 @@ def _inertia(parameters: ParameterFile, moves: Sequence[str]) -> Array:
     if mass is not None and mass.inertia is not None and "p" not in spinning:
         return np.diag([0.0, mass.inertia, mass.inertia])
     if spinning:
-        raise InputError(
-            f"no moment of inertia for {', '.join(sorted(spinning))}", "mass.inertia_matrix and mass.centre",
-            column="mass", advice="Or hold the motion: --free with the others, such as --free u,v,r.",
-        )  # fmt: skip
+        raise input_error("motion.no_inertia", column="mass", spinning=", ".join(sorted(spinning)))
     return np.zeros((3, 3))
 
 
@@ -312,11 +304,7 @@ def _positive(made: Vehicle) -> None:
     block = made.effective_mass[at]
     low = float(np.linalg.eigvalsh((block + block.T) / 2.0)[0])
     if not low > 0.0:
-        raise InputError(
-            f"an effective mass M_RB + M_A of {', '.join(made.free)} with an eigenvalue of {low:g}",
-            "a positive definite one", column="added_mass",
-            advice="An acceleration derivative has the wrong sign, or mass and added mass belong to different bodies.",
-        )  # fmt: skip
+        raise input_error("motion.mass_not_definite", column="added_mass", free=", ".join(made.free), low=low)
 
 
 def control_rows(controls: Mapping[str, Array], n: int) -> Array:

@@ -6,21 +6,22 @@ Numbers beside what they are held against, as tables.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from enum import StrEnum
 from math import copysign, inf, nan
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING
 
 from coeflab.core.cards import html_by
 from coeflab.core.table import ABSENT, Table
 from coeflab.core.text.csv_rows import csv_text
-from coeflab.core.types import brief, in_angles
+from coeflab.core.types import dataclass, in_angles
 from coeflab.core.wording import in_sentences, listed
 from coeflab.law.symbols import primed
+from coeflab.report.texts import table_of, text_of
 from coeflab.study.study import Study
 from coeflab.study.validation import WIDE, Validation, by_measured_number, printed_indices, validations
 
 if TYPE_CHECKING:
+    from coeflab.report.document import Figure
     from coeflab.vehicle.parameter_file import ParameterFile
 
 
@@ -39,16 +40,6 @@ class Basis(StrEnum):
         return self is Basis.VALIDATION
 
 
-BASES: dict[Basis, str] = {
-    Basis.VALIDATION: "a measurement that was not used",
-    Basis.VERIFICATION: "published: computed by its authors from the same equations or data",
-    Basis.REVISED: "published, not used in a constant, but our methods were revised after a comparison with them",
-    Basis.CALIBRATION: "our model was fitted to these numbers, so agreement proves nothing",
-    Basis.CONSISTENCY: "not published: computed here in a second way, or by theory",
-}
-
-
-@brief
 @dataclass(frozen=True, slots=True)
 class Compared:
     """One number of ours and what it is held against.
@@ -97,7 +88,6 @@ class Compared:
         return (self.difference if self.at_most else abs(self.difference)) <= self.tolerance
 
 
-@brief
 @dataclass(frozen=True, slots=True)
 class ComparedTable:
     """Rows of one published table or figure.
@@ -128,33 +118,10 @@ class ComparedTable:
         """Whether every row does."""
         return all(r.holds for r in self.rows)
 
-
-class Drawing(Protocol):
-    """A figure as the report knows it; here it is only handed on."""
-
     @property
-    def anchor(self) -> str:
-        """Unique in the report."""
-
-    @property
-    def svg(self) -> str:
-        """One ``<svg>`` element."""
-
-    @property
-    def title(self) -> str:
-        """A short name."""
-
-    @property
-    def caption(self) -> str:
-        """What it shows."""
-
-    @property
-    def description(self) -> str:
-        """The same for readers who cannot see it."""
-
-    @property
-    def panels(self) -> tuple[Any, ...]:
-        """The numbers behind it."""
+    def within(self) -> str:
+        """How many rows hold, of how many."""
+        return f"{sum(r.holds for r in self.rows)} of {len(self.rows)}"
 
 
 @dataclass(frozen=True, slots=True)
@@ -169,7 +136,7 @@ class Acceptance:
         Errors of the publication, each with what stands in their place.
     statements : tuple of str
     citations : tuple of str
-    figures : tuple of (str, Drawing)
+    figures : tuple of (str, Figure)
         File name without ending, and the drawing.
     conventions : tuple of str
         Axes, signs and units of its own, beside those that hold for every report.
@@ -187,7 +154,7 @@ class Acceptance:
     errata: tuple[str, ...]
     statements: tuple[str, ...]
     citations: tuple[str, ...]
-    figures: tuple[tuple[str, Drawing], ...] = ()
+    figures: tuple[tuple[str, Figure], ...] = ()
     conventions: tuple[str, ...] = ()
     parameter_files: tuple[ParameterFile, ...] = ()
     shown: tuple[Table, ...] = ()
@@ -375,10 +342,7 @@ WORST_NOTE = f"{WORST}: the largest difference in % of its tolerance; of a limit
 
 def overview(found: Acceptance) -> Table:
     """One row a table of the publication."""
-    rows = tuple(
-        (t.title, t.source, f"{sum(r.holds for r in t.rows)} of {len(t.rows)}", _closest(t.rows), _verdict(t.rows))
-        for t in found.tables
-    )
+    rows = tuple((t.title, t.source, t.within, _closest(t.rows), _verdict(t.rows)) for t in found.tables)
     notes = (WORST_NOTE,)
     headers = ("what", "in the publication", "within", WORST, "verdict")
     return Table("Tables of the publication", headers, rows, notes, frozenset({0, 1, 4}))
@@ -390,7 +354,7 @@ def by_basis(found: Acceptance) -> Table:
     for b, (good, count) in held(found).items():
         mine = [r for r in found.numbers if r.basis is b]
         if mine:
-            rows.append((b.value, BASES[b], f"{good} of {count}", _closest(mine), _verdict(mine)))
+            rows.append((b.value, text_of(f"acceptance.{b}"), f"{good} of {count}", _closest(mine), _verdict(mine)))
     again = found.repeated
     once = f"{len(again)} more comparisons repeat these numbers in another way: {sum(r.holds for r in again)} within the tolerance."
     headers = ("basis", MEANING, "within", WORST, "verdict")
@@ -411,27 +375,15 @@ def _verdict(rows: Sequence[Compared]) -> str:
 def errata(acceptance: Acceptance) -> Table:
     """Errors of the publication and what stands in their place."""
     rows = tuple((str(i), text) for i, text in enumerate(acceptance.errata, start=1))
-    return Table(
-        "Errata of the publication", ("no.", "what is wrong, and the correction"), rows, left=frozenset({0, 1})
-    )
+    return table_of("acceptance.errata", rows)
+
+
+CSV = ("table", "case", "quantity", "unit", "held_against", "found", "difference", "relative", "tolerance", "basis", "passed")  # fmt: skip
 
 
 def acceptance_csv(acceptance: Acceptance) -> bytes:
     """All rows of all tables."""
-    heads = (
-        "table",
-        "case",
-        "quantity",
-        "unit",
-        "held_against",
-        "found",
-        "difference",
-        "relative",
-        "tolerance",
-        "basis",
-        "passed",
-    )
-    rows: list[tuple[object, ...]] = [heads]
+    rows: list[tuple[object, ...]] = [CSV]
     for t in acceptance.tables:
         for r in t.rows:
             numbers = (r.against, r.found, r.difference)

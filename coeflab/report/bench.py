@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from math import isfinite
 from typing import Any
 
@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from coeflab.core.errors import InputError
-from coeflab.core.types import Array, brief
+from coeflab.core.types import Array, dataclass
 from coeflab.core.wording import finite
 from coeflab.fits.results.fit_result import FitResult, Sweep
 from coeflab.fits.rows.sweeps import one_size
@@ -44,7 +44,6 @@ RUDDERS = (10.0, 20.0)  # deg: the zigzags of IMO MSC.137(76)
 PUBLISHED = 4  # values drawn beside ours
 
 
-@brief
 @dataclass(frozen=True, slots=True)
 class BenchData:
     """What a workbench page computes with; every part as JSON takes it, arrays as lists.

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 import shlex
-from collections.abc import Collection, Iterator, Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import replace
 from functools import partial
 
@@ -16,11 +16,10 @@ from coeflab.fits import FITS
 from coeflab.fits.results.fit_result import FitResult
 from coeflab.formats import loss_tables
 from coeflab.report.bench import bench_of
-from coeflab.report.document import Document, Section, Topic, digest_of, reproduction, shipped_name
+from coeflab.report.document import Document, Section, Topic, digest_of, every, reproduction, shipped_name
 from coeflab.report.figures.svg import settings
 from coeflab.report.first_page import answer
 from coeflab.report.notation import keeping, users_texts
-from coeflab.report.sections.acceptance import PROVENANCE
 from coeflab.report.sections.body import added_mass_sections, body_sections
 from coeflab.report.sections.campaign import (
     anchor,
@@ -45,6 +44,7 @@ from coeflab.report.tables import nouns as noun_tables
 from coeflab.report.tables import results as tables
 from coeflab.report.tables import sources as source_tables
 from coeflab.report.tables import uncertainty as budget_tables
+from coeflab.report.texts import text_of
 from coeflab.report.workers import begun
 from coeflab.study.study import Study
 from coeflab.study.validation import validations
@@ -85,7 +85,7 @@ def document(study: Study, *, full: bool = True, review: bool = False) -> Docume
 def core(document: Document, sources: Collection[str] | None = None) -> Document:
     """A report without what belongs to the appendix, and of the works those named, else all; no paragraph, note or caption is longer than three lines."""
     sections = tuple(_short(s, document.digest) if s.anchor == "reproduce" else s for s in _kept(document.sections))
-    known = {s.anchor for s in _every(sections)}
+    known = {s.anchor for s in every(sections)}
     answer = document.answer
     if answer is not None:
         rows = tuple(replace(r, anchor=_found(r.anchor, known)) for r in answer.rows)
@@ -142,19 +142,12 @@ def _short(reproduce: Section, digest: str) -> Section:
     if not reproduce.code:
         return reproduce
     text = (
-        f"Made by coeflab {VERSION}, which is not released yet. Record the commit of its sources with this report. To install that commit, run in "
-        "its sources: pip install . -c constraints.txt",
+        text_of("content.made_by", version=VERSION),
         "Equal inputs, sources and libraries give this report byte for byte."
         + (f" Digest of all input files: {digest}." if digest else ""),
         *reproduce.paragraphs[-1:],
     )
     return replace(reproduce, paragraphs=three_lines(text))
-
-
-def _every(sections: Sequence[Section]) -> Iterator[Section]:
-    for s in sections:
-        yield s
-        yield from _every(s.subsections)
 
 
 def _kept(sections: Sequence[Section]) -> tuple[Section, ...]:
@@ -253,10 +246,7 @@ def _models(study: Study) -> tuple[Section, ...]:
     models = tuple(m for f in study.fits for m in f.models)
     if not models:
         return ()
-    text = (
-        "Force laws and tables over one or more variables. What the data leave open is said below each table and has no "
-        "number; outside the domain the stated rule holds.",
-    )
+    text = (text_of("content.models"),)
     each = tuple(noun_tables.terms(m) for m in models)
     return (
         Section(
@@ -274,8 +264,7 @@ def _laws(study: Study) -> tuple[Section, ...]:
     if not each:
         return ()
     text: tuple[str, ...] = (
-        "Allowed difference of a law and its points: three times the scatter of repeated runs plus 5 % of the largest force. Where a law misses a point by "
-        "more, its range ends before that point.",
+        text_of("content.laws"),
         *(_held(name, found[name], table) for name, table in each.items()),
     )
     in_files = {c.campaign for p in study.parameter_files.values() for c in p.coefficients}
@@ -317,8 +306,7 @@ def _comparison(study: Study) -> tuple[Section, ...]:
     for r in study.references:
         if r.other_scaling is not None:
             lengths.append(
-                f'"{r.name}" has two columns, because its source does not say which length it used: {r.scaling} (values as printed) or '
-                f"{r.other_scaling} (every value rescaled)."
+                text_of("content.two_lengths", name=r.name, scaling=r.scaling, other_scaling=r.other_scaling)
             )
     shown = filled(
         comparisons.campaigns(study),
@@ -354,7 +342,7 @@ def _checks(study: Study) -> Section:
 def _provenance(study: Study) -> Section:
     """What went in: a short list of files here, a long one in the appendix."""
     inputs = filled(tables.provenance(study), source_tables.made_from(study))
-    words = PROVENANCE
+    words = text_of("acceptance.by_sha256")
     if many := (files := len(study.inputs)) > MANY:
         words = f"{files} input files; --full lists their sha256."
     text = (words, *dict.fromkeys(_settings(f) for f in study.fits if f.settings))

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import hashlib
 import shlex
-from dataclasses import dataclass
+from collections.abc import Iterable, Iterator
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,19 +16,18 @@ from coeflab.core.cards import html_by
 from coeflab.core.files import shipped
 from coeflab.core.finding import Severity
 from coeflab.core.provenance import InputFile, sha256_of
-from coeflab.core.table import Table, as_printed
-from coeflab.core.types import brief, in_angles, locked
+from coeflab.core.table import ABSENT, Table, as_printed, with_u95
+from coeflab.core.types import dataclass, in_angles, locked
 from coeflab.core.version import VERSION
 from coeflab.law.symbols import primed
-from coeflab.report.acceptance import Acceptance
 from coeflab.report.bench import BenchData
+from coeflab.report.texts import text_of
 from coeflab.study.study import Plan, Study
 from coeflab.tables.assumptions import FLAG
 
 Range = tuple[float, float]
 
 
-@brief
 @dataclass(frozen=True, slots=True)
 class Series:
     """Points or a curve of a drawing, as numbers.
@@ -57,7 +56,6 @@ class Series:
     is_curve: bool = False
 
 
-@brief
 @dataclass(frozen=True, slots=True)
 class Panel:
     """One pair of axes of a drawing, and what stands in it.
@@ -89,7 +87,6 @@ class Panel:
     bars: str = ""
 
 
-@brief
 @dataclass(frozen=True, slots=True, eq=False)
 class Layer:
     """Triangles, lines or points of a scene.
@@ -124,7 +121,6 @@ class Layer:
         object.__setattr__(self, "index", locked(self.index, int))
 
 
-@brief
 @dataclass(frozen=True, slots=True)
 class Axis:
     """One axis of a scene: name, unit, ends, and the values marked on it with their texts."""
@@ -136,7 +132,6 @@ class Axis:
     texts: tuple[str, ...] = ()
 
 
-@brief
 @dataclass(frozen=True, slots=True, eq=False)
 class Scene:
     """Something to be turned in space; the figure that holds it is what stands where that cannot be.
@@ -158,7 +153,6 @@ class Scene:
     is_body: bool = False
 
 
-@brief
 @dataclass(frozen=True, slots=True)
 class Figure:
     """A drawing.
@@ -194,7 +188,6 @@ class Figure:
         return html_by("figure", self)
 
 
-@brief
 @dataclass(frozen=True, slots=True)
 class AnswerRow:
     """One wanted coefficient beside the published ones.
@@ -251,8 +244,16 @@ class AnswerRow:
         """Difference over U95, with its sign: the length of the bar."""
         return self.difference / self.u95 if self.difference is not None and self.u95 else None
 
+    @property
+    def apart(self) -> tuple[str, str]:
+        """The difference with its sign and the digits of U95, and over U95."""
+        sign = "+" * (self.difference is not None and self.difference > 0.0)
+        share = (
+            ABSENT if self.share is None else f"{self.share:+.2f}" if abs(self.share) < 10.0 else f"{self.share:+.0f}"
+        )
+        return sign + with_u95(self.difference, self.u95)[0], share
 
-@brief
+
 @dataclass(frozen=True, slots=True)
 class Chip:
     """One of stability, largest uncertainty, warnings, exports: a name, at most six words, how grave, where it leads."""
@@ -309,7 +310,6 @@ class Answer:
         return html_by("answer", self)
 
 
-@brief
 @dataclass(frozen=True, slots=True)
 class Topic:
     """Sentences on one matter, with its name in the margin.
@@ -326,7 +326,6 @@ class Topic:
     texts: tuple[str, ...]
 
 
-@brief
 @dataclass(frozen=True, slots=True)
 class Section:
     """Paragraphs, then topics, figures, tables and subsections.
@@ -365,7 +364,6 @@ class Section:
         return (*self.paragraphs, *(text for t in self.topics for text in t.texts))
 
 
-@brief
 @dataclass(frozen=True, slots=True)
 class Document:
     """A whole report.
@@ -399,15 +397,18 @@ class Document:
     bench: BenchData | None = None
 
 
+def every(sections: Iterable[Section]) -> Iterator[Section]:
+    """Sections and all that stand in them, in the order of reading."""
+    for section in sections:
+        yield section
+        yield from every(section.subsections)
+
+
 PLAN = "plan.toml"
 VERSION_TEXT = (
     f"This report was made by coeflab {VERSION}: coeflab --version tells which one is installed. Nothing is released yet, so many "
     "states of the sources carry that number: note the commit beside a report that has to be made again, and install it with "
     "pip install . -c constraints.txt, which also takes the libraries in the versions that the tests run with."
-)
-SAME = (
-    "Equal inputs, sources and libraries give this report byte for byte, whatever the folder that --out names; every format is made from the "
-    "same content, so it may be asked for alone."
 )
 
 
@@ -416,7 +417,7 @@ def reproduction(study: Study) -> Section:
     file = study.plan.file
     if file is None and study.plan.command:
         where = "Run this where the shape lies: paths are named by their last part. --out names another folder."
-        return _section((where, SAME), (study.plan.command,), study.inputs)
+        return _section((where, text_of("document.same")), (study.plan.command,), study.inputs)
     if file is None:
         return _section(
             ("The plan was made by a program, not read from a file, so no command gives this report.",),
@@ -426,18 +427,15 @@ def reproduction(study: Study) -> Section:
     name = shipped_name(study.plan)
     if name:
         where = f"coeflab ships with the plan and the data of the study {name}. Run this in any folder."
-        return _section((where, SAME), (command(name),), study.inputs)
-    where = (
-        f"Run this in the folder of {file.name}; the files that the plan names must be at the paths it states. coeflab run {file.name} writes "
-        "the same HTML, and beside it the parameter files and the coefficients."
-    )
-    return _section((where, SAME), (command(file.name),), study.inputs)
+        return _section((where, text_of("document.same")), (command(name),), study.inputs)
+    where = text_of("document.own_plan", name=file.name)
+    return _section((where, text_of("document.same")), (command(file.name),), study.inputs)
 
 
-def published_reproduction(found: Acceptance, inputs: tuple[InputFile, ...]) -> Section:
+def published_reproduction(name: str, inputs: tuple[InputFile, ...]) -> Section:
     """Of a publication reproduced."""
-    where = f"The validation {found.name} is shipped with coeflab with its data. Run this in any folder."
-    return _section((where, SAME), (command(found.name),), inputs)
+    where = f"The validation {name} is shipped with coeflab with its data. Run this in any folder."
+    return _section((where, text_of("document.same")), (command(name),), inputs)
 
 
 def command(study: str) -> str:
@@ -466,8 +464,4 @@ def _section(text: tuple[str, ...], code: tuple[str, ...], inputs: tuple[InputFi
 def _hashes(inputs: tuple[InputFile, ...]) -> tuple[str, ...]:
     if not inputs:
         return ()
-    return (
-        "What went in is listed under Provenance: the sha256 of every file's bytes, as sha256sum prints it. Their digest is "
-        f"{digest_of(inputs)}, the first 16 digits of the sha256 of one line a file, its name, a space and its sha256, in the order "
-        "of that table. The head of this report shows it; a report with another digest has other inputs.",
-    )
+    return (text_of("document.hashes", inputs=digest_of(inputs)),)

@@ -33,6 +33,7 @@ from coeflab.report.sections.stability import from_literature, no_index
 from coeflab.report.tables.models import quality
 from coeflab.report.tables.own_cfd import NO_RESULT
 from coeflab.report.tables.results import assumed_of
+from coeflab.report.texts import text_of
 from coeflab.study.lines import MEANING as MEANING_OF_LINE
 from coeflab.study.lines import NAME, line
 from coeflab.study.study import Study
@@ -43,7 +44,6 @@ from coeflab.vehicle.stability import ALONE, FAST, INDICES, Derived, missing_for
 ROLL = "K"  # moments of which no hull has a sign: a headline says what is open of one that is asked for, or alone
 PLACES = 4  # of a line, which has no U95 to say how many count
 LARGEST, TALL = 100_000, 440.0  # letters of a drawing that a first page may hold; points, with the axes below it
-SUBTITLE = "Summary on one page; the report holds every number, check and source"
 
 
 def answer(found: Study | Acceptance, *, drawn: bool = True) -> Answer:
@@ -472,14 +472,20 @@ def study_summary(study: Study) -> Document:
     with keeping(verbatim):
         result = answer(study)
     return Document(
-        study.plan.title or study.plan.name, SUBTITLE, (), study.plan.name, digest_of(study.inputs), verbatim=verbatim,
+        study.plan.title or study.plan.name, text_of("first_page.subtitle"), (), study.plan.name, digest_of(study.inputs), verbatim=verbatim,
         answer=_unlinked(result),
     )  # fmt: skip
 
 
 def acceptance_summary(found: Acceptance, whole: Document) -> Document:
     """One page on a publication reproduced, of whose whole report it takes name and inputs."""
-    return replace(whole, subtitle=SUBTITLE, sections=(), works=(), answer=_unlinked(whole.answer or answer(found)))
+    return replace(
+        whole,
+        subtitle=text_of("first_page.subtitle"),
+        sections=(),
+        works=(),
+        answer=_unlinked(whole.answer or answer(found)),
+    )
 
 
 def _unlinked(made: Answer) -> Answer:

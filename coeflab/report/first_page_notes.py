@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 from coeflab.core.axes import point_in_words
 from coeflab.core.provenance import work
-from coeflab.core.types import brief
-from coeflab.core.wording import in_sentences, listed
+from coeflab.core.types import dataclass
+from coeflab.core.wording import collected, in_sentences, listed
 from coeflab.fits.glide_polar import munk_in_words
 from coeflab.fits.uncertainty.budget import RIG
 from coeflab.law.coefficient import CoefficientSet
@@ -27,7 +26,6 @@ MOST_LETTERS, MOST_NAMED = 240, 4
 NO_DATA = "no data"
 
 
-@brief
 @dataclass(frozen=True, slots=True, eq=False)
 class Beside:
     """The published columns of one body.
@@ -153,10 +151,10 @@ def _not_in_u95(study: Study, rows: Sequence[AnswerRow]) -> str:
     if not names:
         return f"U95 is without rig and balance; {stated}." if stated else ""
     more = " and others (see Coefficients)" if len(names) > MOST_NAMED else ""
-    by: dict[tuple[str, ...], list[str]] = {}
-    for n in names[: MOST_NAMED - 1] if more else names:
-        of = () if lacking[n] == whole else tuple(primed(r.symbol) for r in rows if r.symbol in lacking[n])
-        by.setdefault(of, []).append(n)
+    by = collected(
+        (() if lacking[n] == whole else tuple(primed(r.symbol) for r in rows if r.symbol in lacking[n]), n)
+        for n in (names[: MOST_NAMED - 1] if more else names)
+    )
     shown = [*by.pop((), []), *(f"{listed(those)} ({listed(of)})" for of, those in by.items())]
     words = f"; {stated}" if stated else ""
     which = f"{', '.join(shown)}{more}" if more else f"{listed(shown)} (see Coefficients)"
@@ -186,9 +184,7 @@ def _independent(study: Study) -> str:
         [b.removeprefix(f"{study.plan.name}_").replace("_", " ") for b in dict.fromkeys(v.body for v in found)]
     )
     outside = list(dict.fromkeys(primed(v.symbol) for v in found if not v.within))
-    shares: dict[str, list[str]] = {}
-    for v in (v for v in found if v.weak):
-        shares.setdefault(primed(v.symbol), []).append(v.share)
+    shares = collected((primed(v.symbol), v.share) for v in found if v.weak)
     weak = [f"{s} (U_V is {_span(each)} of it)" for s, each in shares.items()]
     wanted_first = sorted(found_without, key=lambda v: v.symbol.removesuffix("'") not in study.plan.wanted)
     uncounted = [primed(v.symbol) for v in wanted_first if v.beyond]

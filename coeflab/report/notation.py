@@ -14,14 +14,14 @@ import unicodedata
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from contextvars import ContextVar
-from dataclasses import dataclass, fields, is_dataclass
+from dataclasses import fields, is_dataclass
 from functools import lru_cache, wraps
 from html import escape
 from typing import ParamSpec, TypeVar
 
 from coeflab.core.errors import InputError
 from coeflab.core.text.patterns import one_of
-from coeflab.core.types import brief
+from coeflab.core.types import dataclass
 from coeflab.core.wording import Verbatim
 from coeflab.law.symbols import CONTROLS, derivative
 from coeflab.report.printable import runs_to_the_left, visible
@@ -45,7 +45,6 @@ class Factor:
     absolute: bool = False
 
 
-@brief
 @dataclass(frozen=True, slots=True)
 class Symbol:
     """A letter with what stands below and above it.

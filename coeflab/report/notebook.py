@@ -22,10 +22,10 @@ from coeflab.core.several import labels
 from coeflab.core.table import ABSENT, Table, number, percent
 from coeflab.core.text.bounded import own_text
 from coeflab.core.types import Array
-from coeflab.core.wording import listed
+from coeflab.core.wording import counted, listed
 from coeflab.law.coefficient import Coefficient, CoefficientSet
 from coeflab.law.symbols import COMPONENTS, MOTIONS, primed
-from coeflab.report.notation import MINUS, cell_html, html, keeping, unit_html, users_texts
+from coeflab.report.notation import cell_html, html, keeping, unit_html, users_texts
 from coeflab.report.tables import nouns as tables
 
 if TYPE_CHECKING:
@@ -39,7 +39,7 @@ if TYPE_CHECKING:
     from coeflab.motion.manoeuvre import Simulation
     from coeflab.motion.trajectory import Trajectory
     from coeflab.report.acceptance import Acceptance
-    from coeflab.report.document import Answer, AnswerRow, Figure
+    from coeflab.report.document import Answer, Figure
     from coeflab.study.study import Study
     from coeflab.tables.force_table import ForceTable
     from coeflab.vehicle.parameter_file import ParameterFile
@@ -48,7 +48,7 @@ OF_SEVERITY = {Severity.PASS: "#1f9370", Severity.NOTE: "#8a97a5", Severity.WARN
 OURS, AGAINST = "#2f86c5", "#d2691e"
 DRAWN = "noun"
 LONG, MOST_ROWS, MOST_NOTES, MOST_PICTURES = 34, 24, 4, 2
-WIDE, TALL, REACH = 100.0, 14.0, 2.0
+WIDE, TALL = 100.0, 14.0
 ACROSS = 1.12  # pixels a point of a drawing at the most
 DRAFT = "coeflab-draft"  # stands for the digest of the card, which ids begin with
 
@@ -128,10 +128,6 @@ def _cell(text: str) -> Part:
     return f'<span class="long">{cell_html(text)}</span>' if len(text) > LONG else cell_html(text)
 
 
-def _many(count: int, what: str) -> str:
-    return f"{count} {what}{'' if count == 1 else 's'}"
-
-
 def _notes(notes: Sequence[str]) -> Part:
     return "".join(f'<p class="note">{html(n)}</p>' for n in notes)
 
@@ -169,17 +165,6 @@ def _interval(value: float | None, u95: float | None) -> Part:
     )
 
 
-def _against(row: AnswerRow) -> Part:
-    """Difference over U95: within the two lines it is no larger than U95."""
-    if row.share is None:
-        return ""
-    low, high = sorted((0.0, row.share))
-    words = f"difference {row.share:+.2f} U95"
-    bar = _bar(low, high, row.share, (-1.0, 0.0, 1.0), (-REACH, REACH), words)
-    number_ = f"{row.share:+.2f}".replace("-", MINUS)
-    return f'<span class="beside">{number_} {bar}</span>'
-
-
 def _coefficient_row(c: Coefficient) -> list[Part]:
     value, u95 = tables.with_status(c)
     if c.value is None:
@@ -208,20 +193,16 @@ def answer(found: Answer) -> tuple[Part, ...]:
 
 
 def _answer(found: Answer) -> Part:
-    """Pictures, then the rows of `answer_table` with the bars drawn, chips and notes."""
+    """Pictures, then the rows of `answer_table`, chips and notes."""
     from coeflab.report.answer_table import answer_table
 
     table = answer_table(found)
     if found.table is not None:
         rows = _shown(table)
     else:
-        judged = table.headers[-1:] == ("difference/U95",)
         cells = [
-            [
-                *(_absent(c) if i == 1 and r.value is None else cell_html(c) for i, c in enumerate(row)),
-                *([_against(r)] if judged else []),
-            ]
-            for r, row in zip(found.rows, (row[:-1] if judged else row for row in table.rows), strict=True)
+            [_absent(c) if i == 1 and r.value is None else cell_html(c) for i, c in enumerate(row)]
+            for r, row in zip(found.rows, table.rows, strict=True)
         ]
         rows = _grid(table.headers, cells, table.left) + _notes(table.notes[:MOST_NOTES])
     chips = "".join(
@@ -238,8 +219,8 @@ def study(found: Study) -> tuple[Part, ...]:
 
     first = answer_of(found)
     about = (
-        f"Study {found.plan.name}: {_many(len(found.tables), 'table')}, {_many(len(found.fits), 'fit')}, "
-        f"{_many(len(found.coefficients), 'coefficient')}, {_many(len(found.checks), 'finding')}. "
+        f"Study {found.plan.name}: {counted(len(found.tables), 'table')}, {counted(len(found.fits), 'fit')}, "
+        f"{counted(len(found.coefficients), 'coefficient')}, {counted(len(found.checks), 'finding')}. "
         f"Parameter files: {', '.join(found.parameter_files) or 'none'}."
     )
     return (_heading(first.sentence, about), _answer(first))
@@ -344,7 +325,7 @@ def _lines(found: Sequence[Any]) -> tuple[Part, ...]:
 
 def _coefficients(found: Sequence[Coefficient]) -> tuple[Part, ...]:
     valued = sum(c.value is not None for c in found)
-    return (_coefficient_grid(found, f"{_many(len(found), 'coefficient')}, {valued} with a value"),)
+    return (_coefficient_grid(found, f"{counted(len(found), 'coefficient')}, {valued} with a value"),)
 
 
 def _tables(found: Sequence[ForceTable]) -> tuple[Part, ...]:
@@ -354,7 +335,7 @@ def _tables(found: Sequence[ForceTable]) -> tuple[Part, ...]:
         (t.name, f"{len(t)}", " ".join(t.forces), " ".join(t.varies) or ABSENT, t.body, t.source.citation)
         for t in found
     )
-    shown = Table(_many(len(found), "table"), ("", "rows", "components", "over", "body", "source"), rows, (),
+    shown = Table(counted(len(found), "table"), ("", "rows", "components", "over", "body", "source"), rows, (),
                   frozenset({0, 2, 3, 4, 5}))  # fmt: skip
     return (_parts(*_pictures(table_figure, found), f"<div>{_shown(shown)}</div>"),)
 
@@ -369,7 +350,7 @@ def _files(found: Sequence[ParameterFile]) -> tuple[Part, ...]:
         rows.append((p.name, p.body, f"{valued} of {len(p.coefficients)}", f"{len(p.models)}",
                      ", ".join(name for name, value in held if value) or ABSENT))  # fmt: skip
     headers = ("", "body", "coefficients with a value", "fitted tables", "with")
-    shown = Table(_many(len(found), "parameter file"), headers, tuple(rows), (), frozenset({0, 1, 4}))
+    shown = Table(counted(len(found), "parameter file"), headers, tuple(rows), (), frozenset({0, 1, 4}))
     return (_parts(*_pictures(law_figure, found), f"<div>{_shown(shown)}</div>"),)
 
 
@@ -382,7 +363,7 @@ def _pictures(draw: Callable[[Any, str], Figure | None], found: Sequence[Any]) -
 def _findings(found: Sequence[Check]) -> tuple[Part, ...]:
     from coeflab.report.tables.results import checks
 
-    return (_shown(replace(checks(found), title=_many(len(found), "finding"))),)
+    return (_shown(replace(checks(found), title=counted(len(found), "finding"))),)
 
 
 def _budgets(found: Sequence[Budget]) -> tuple[Part, ...]:
@@ -471,7 +452,7 @@ def parameters(found: ParameterFile) -> tuple[Part, ...]:
     valued = sum(c.value is not None for c in found.coefficients)
     heading = f"{found.name}: " + ", ".join(
         [f"{valued} of {len(found.coefficients)} coefficients have a value"] * bool(found.coefficients)
-        + [_many(len(found.models), "fitted table")] * bool(found.models)
+        + [counted(len(found.models), "fitted table")] * bool(found.models)
     )
     about = f"{found.body}; primed by {found.scaling.length_name} {found.scaling.length:.5g} m; SI at {at}"
     held = [
@@ -479,7 +460,7 @@ def parameters(found: ParameterFile) -> tuple[Part, ...]:
         for n, v in (("mass", found.mass), ("added mass", found.added_mass), ("hydrostatics", found.hydrostatics))
         if v
     ]
-    held += [_many(len(found.thrusters), "thruster")] if found.thrusters else []
+    held += [counted(len(found.thrusters), "thruster")] if found.thrusters else []
     ordered = sorted(found.coefficients, key=lambda c: c.value is None)
     return (_heading(heading, about, f"With {listed(held)}." if held else ""),
             _parts(_picture(law_figure(found, DRAWN)), f"<div>{_coefficient_grid(ordered) if ordered else ''}{_models(found)}</div>"),

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from coeflab.core.errors import InputError
+from coeflab.core.texts import input_error
 from coeflab.report.bench import bench_of
 from coeflab.report.formats.workbench import data_json, numbers, source
 from coeflab.study.study import Study
@@ -38,11 +39,7 @@ def widget(study: Study) -> Any:
         import anywidget
         import traitlets
     except ModuleNotFoundError as why:
-        raise InputError(
-            f"no module {why.name}",
-            "anywidget",
-            advice='Install "coeflab[notebook]", or write the page: --to workbench.',
-        ) from None
+        raise input_error("report.no_module", name=why.name) from None
     members = {
         "_esm": module(),
         "_css": source("page.css"),

@@ -8,7 +8,7 @@ From fitted models to those of a parameter file.
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
@@ -18,7 +18,8 @@ from numpy.typing import NDArray
 from coeflab.core.axes import ANYWHERE
 from coeflab.core.errors import InputError, ScalingMismatchError, shown
 from coeflab.core.finding import Finding, Severity
-from coeflab.core.types import brief
+from coeflab.core.texts import input_error, text_of
+from coeflab.core.types import dataclass
 from coeflab.core.version import VERSION
 from coeflab.core.wording import finite
 from coeflab.fits.glide_polar import with_munk
@@ -64,11 +65,9 @@ def _literature(
             )  # fmt: skip
         reference, point = known[name], among.reference_point
         if reference.literature and reference.reference_point is None:
-            raise InputError(
-                f"{shown(name)} without reference_point", "the point that its values are about, in published.toml",
-                column=f"parameter_file.{group.name}.literature",
-                advice="Yr' and Nr' differ from point to point: add reference_point, and datum, as the source states them.",
-            )  # fmt: skip
+            raise input_error(
+                "vehicle.without_reference_point", column=f"parameter_file.{group.name}.literature", name=shown(name)
+            )
         if reference.datum is not None and reference.datum != among.datum:
             raise ScalingMismatchError(
                 f"{name} measures points from {shown(reference.datum.id)}, the parameter file from {shown(among.datum.id)}: "
@@ -372,9 +371,7 @@ def assemble(
     """
     chosen = [f for name in group.campaigns for f in fits if f.campaign == name]
     if not chosen:
-        raise InputError(
-            "no campaign", "campaigns that the study fits", column=f"parameter_file.{group.name}.campaigns"
-        )
+        raise input_error("vehicle.no_campaign", column=f"parameter_file.{group.name}.campaigns")
     first, chosen, tables = _from_one_datum(chosen, tables, body)
     sets = [f.coefficients for f in chosen]
     for s, f in zip(sets, chosen, strict=True):
@@ -417,14 +414,10 @@ def assemble(
             label = f"{shape.name}, of another shape"
         hull = added_mass_record(found, first.reference_point, first.datum, group.body if alike.same else label)
         if alike.same is None:
-            notes.append(
-                f"added mass is that of {shape.name}, the coefficients are those of {group.body}: whether both are one body is "
-                f"not known ({alike.words})"
-            )
+            notes.append(text_of("vehicle.bodies_not_known_alike", name=shape.name, body=group.body, words=alike.words))
         elif not alike.same:
             notes.append(
-                f"added mass is that of {shape.name}, the coefficients are those of {group.body}: their potential parts are "
-                f"those of another shape ({alike.words})"
+                text_of("vehicle.added_mass_of_another_shape", name=shape.name, body=group.body, words=alike.words)
             )
         elif shape.name != group.body:
             notes.append(
@@ -509,7 +502,6 @@ def with_points(parameters: ParameterFile, tables: Sequence[ForceTable], fits: S
     return result.model_copy(update={"law_at_points": points_of(result)})
 
 
-@brief
 @dataclass(frozen=True, slots=True)
 class PlannedParameterFile:
     """One ``[[parameter_file]]``: which campaigns, which literature and whose added mass it holds.

@@ -8,7 +8,7 @@ Fitted tables of two parameter files side by side, on a grid inside the data of 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from enum import StrEnum
 from typing import Protocol
 
@@ -16,8 +16,8 @@ import numpy as np
 
 from coeflab.core.axes import ANYWHERE
 from coeflab.core.machine import one_thread
-from coeflab.core.texts import remark
-from coeflab.core.types import Array, brief
+from coeflab.core.texts import remark, text_of
+from coeflab.core.types import Array, dataclass
 from coeflab.law.coefficient import Coefficient, CoefficientSet, transfer_matrix
 from coeflab.law.domain import clamped, inside
 from coeflab.law.symbols import ANGULAR, primed
@@ -82,7 +82,6 @@ MOMENTS = frozenset("KMNlmn")
 SAME = 1e-9
 
 
-@brief
 @dataclass(frozen=True, slots=True)
 class ComparedModel:
     """One response over the same variables in two files, in the units, area and length of the first.
@@ -259,7 +258,6 @@ ROUNDING = 1e-9  # of the larger of two values: a move of point and length leave
 OTHER_SIZE = 1.5  # of the larger over the smaller of two values without U95
 
 
-@brief
 @dataclass(frozen=True, slots=True)
 class Compared:
     """One coefficient of two files, primed by the first file's length about its point.
@@ -297,7 +295,6 @@ class Compared:
         return abs(self.difference) / self.combined if self.difference is not None and self.combined else None
 
 
-@brief
 @dataclass(frozen=True, slots=True)
 class Comparison:
     """Two parameter files.
@@ -384,10 +381,7 @@ def compare(a: ParameterFile, b: ParameterFile, names: tuple[str, str] | None = 
     moved = theirs
     same_datum = ours.datum == theirs.datum
     if not same_datum:
-        words.append(
-            f'reference points are measured from other datums, "{ours.datum.id}" and "{theirs.datum.id}": moments and rates '
-            "are not comparable"
-        )
+        words.append(text_of("vehicle.other_datums", ours=ours.datum.id, theirs=theirs.datum.id))
     elif not np.allclose(ours.reference_point, theirs.reference_point, rtol=0.0, atol=SAME_POINT):
         at = ", ".join(f"{x:g}" for x in ours.reference_point)
         words.append(f"{name_b} moved to the reference point of {name_a}, ({at}) m")

@@ -8,7 +8,6 @@ to its other end. In the vertical plane Z, -M, w, -q stand for Y, N, v, r.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -16,7 +15,7 @@ import numpy as np
 from coeflab.core.errors import InputError
 from coeflab.core.finding import Finding, Severity
 from coeflab.core.table import Check, as_check
-from coeflab.core.types import brief, locking
+from coeflab.core.types import dataclass, locking
 from coeflab.law.force_law import CONTROLS
 from coeflab.law.rigid_body import ideal_quadratics
 from coeflab.law.symbols import COMPONENTS, LINEAR, MOTIONS, primed
@@ -42,7 +41,6 @@ TURNS = {"N": ("to port", "to starboard"), "M": ("bow down", "bow up")}
 PUSHES = {"Y": ("to port", "to starboard"), "Z": ("up", "down"), "K": ("port side down", "starboard side down")}
 
 
-@brief
 @dataclass(frozen=True, slots=True, eq=False)
 @locking("motion ideal control")
 class Slopes:

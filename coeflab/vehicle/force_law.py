@@ -9,14 +9,14 @@ with (`coeflab.vehicle.inertia`), so that nothing is counted twice and nothing k
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from coeflab.core.errors import InputError
 from coeflab.core.finding import Finding, Severity
-from coeflab.core.types import brief
+from coeflab.core.types import dataclass
 from coeflab.law.force_law import AHEAD, ForceLaw, ForceTerm, Reading
 from coeflab.law.rigid_body import ideal_quadratics
 from coeflab.law.scaling import powers_of
@@ -249,7 +249,6 @@ def points_of(parameters: ParameterFile) -> tuple[LawAtPoints, ...]:
     return law_at_points(parameters.measured, parameters.law_holds, force_at_edges(parameters), length)
 
 
-@brief
 @dataclass(frozen=True, slots=True)
 class Spoken:
     """What the law of a file was fitted to.

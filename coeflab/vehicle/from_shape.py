@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
@@ -13,7 +13,8 @@ from numpy.typing import NDArray
 from coeflab.bodies.mass_model import at_rest, rest_words
 from coeflab.bodies.shape import Parts, Revolution
 from coeflab.core.errors import InputError, shown
-from coeflab.core.types import brief, locked
+from coeflab.core.texts import input_error, text_of
+from coeflab.core.types import dataclass, locked
 from coeflab.core.wording import listed
 from coeflab.fits.results.fit_result import FitResult
 from coeflab.law.rigid_body import MassProperties, about_another, inertia_doubt
@@ -36,7 +37,6 @@ ABSURD = 3.0  # of the displacement, either way: no unit and no water in the hul
 TRIMMED = 0.005  # of the displacement: less is what a scale reads
 
 
-@brief
 @dataclass(frozen=True, slots=True, eq=False)
 class Stated:
     """What is said of a vehicle beside its shape; None where nothing is.
@@ -64,7 +64,6 @@ class Stated:
                 object.__setattr__(self, name, locked(getattr(self, name)))
 
 
-@brief
 @dataclass(frozen=True, slots=True, eq=False)
 class Weighed:
     """A body with its mass in water.
@@ -121,10 +120,7 @@ def weighed(body: Body, stated: Stated, density: float) -> Weighed:
         _refuse_absurd(body, mass, displaced, density)
         words.append(_buoyed(mass, displaced, density) + _to_neutral(body, mass / displaced, stated))
         if stated.mass is not None and body.mass_model is not None:
-            words.append(
-                f"the stated {stated.mass:.4g} kg stand in the place of the {body.mass_model.mass:.4g} kg of [[mass]] in the body.toml; "
-                "centre of gravity and inertia are those of the file unless stated"
-            )
+            words.append(text_of("vehicle.stated_mass", stated=stated.mass, built=body.mass_model.mass))
         words += _of_other_water(body, density) if stated.mass is None else []
     buoyancy = base.centre_of_buoyancy - body.reference_point
     centre = None if stated.centre is None else stated.centre - body.reference_point
@@ -196,12 +192,7 @@ def _refuse_far(body: Body, lever: np.ndarray, column: str) -> None:
     shape = body.require_shape()
     size, apart = FAR * max(shape.length, shape.volume ** (1.0 / 3.0)), float(np.linalg.norm(lever))
     if apart > size:
-        raise InputError(
-            f"a centre of gravity {apart:.4g} m from the centre of buoyancy",
-            f"at most half the length of the body, {size:.4g} m",
-            column=column,
-            advice=f"It is in m, x forward, y starboard, z down, from the {body.datum}. Another unit goes beside each number: -800 mm.",
-        )
+        raise input_error("vehicle.centre_of_gravity_far_off", column=column, apart=apart, size=size, datum=body.datum)
 
 
 def _floating(body: Body) -> Configuration:

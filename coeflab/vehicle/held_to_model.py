@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
 from coeflab.core.finding import Finding, Severity
-from coeflab.core.types import Array, brief, locking
+from coeflab.core.types import Array, dataclass, locking
 from coeflab.law.symbols import COMPONENTS, CONTROLS
 from coeflab.vehicle.force_law import full_force
 from coeflab.vehicle.parameter_file import ParameterFile
@@ -19,7 +19,6 @@ ALLOWED = 0.05  # of the largest force of a component: what a law of few terms m
 NOTHING = 1e-5  # of 1/2 rho U^2 L^2, and of that times L: a tenth of the smallest coefficients that tests give
 
 
-@brief
 @dataclass(frozen=True, slots=True, eq=False)
 @locking("nu controls")
 class Motions:

@@ -6,13 +6,13 @@ somebody measured. The measured ones are taken where they leave an inertia, and 
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from coeflab.core.errors import InputError, shown
-from coeflab.core.types import brief, locking
+from coeflab.core.texts import input_error
+from coeflab.core.types import dataclass, locking
 from coeflab.law.added_mass import ROUNDING, AddedMass, definiteness
 from coeflab.law.rigid_body import rigid_body_inertia
 from coeflab.law.symbols import COMPONENTS, MOTIONS, derivative, primed
@@ -30,7 +30,6 @@ ACCELERATIONS = (MEASURED, COMPUTED)
 Entry = tuple[int, int]
 
 
-@brief
 @dataclass(frozen=True, slots=True, eq=False)
 @locking("matrix")
 class WaterInertia:
@@ -117,10 +116,7 @@ def water_inertia(parameters: ParameterFile, accelerations: str = MEASURED) -> W
             f"added mass: only its diagonal, because {refused}: entries are missing or wrong, and no computed ones complete them"
         )
         if below := _no_inertia(parameters, matrix):
-            raise InputError(
-                f"an added mass with which {below}", "M + M_A positive definite", column="coefficients",
-                advice="An acceleration derivative has the wrong sign, or mass and added mass belong to different bodies.",
-            )  # fmt: skip
+            raise input_error("vehicle.mass_not_definite", column="coefficients", below=below)
     return WaterInertia(matrix, accelerations, MEASURED, source, tuple(warnings))
 
 
@@ -289,7 +285,5 @@ def central_inertia(parameters: ParameterFile) -> Array | None:
         return np.array(mass.inertia_matrix) + mass.mass * arm @ arm
     central = float(mass.inertia or 0.0) + mass.mass * float((arm @ arm)[1, 1])
     if central <= 0.0:
-        raise InputError(
-            f"{central:g} kg m^2 through the centre of gravity", "an inertia above zero", column="mass.inertia"
-        )
+        raise input_error("vehicle.inertia_not_positive", column="mass.inertia", central=central)
     return central * np.eye(3)

@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from coeflab.core.errors import InputError, ScalingMismatchError, shown
 from coeflab.core.finding import Finding, Severity
-from coeflab.core.texts import words
-from coeflab.core.types import brief
+from coeflab.core.texts import input_error, text_of, words
+from coeflab.core.types import dataclass
 from coeflab.core.version import VERSION
 from coeflab.core.wording import listed
 from coeflab.fits.joint.moving import LEFT_OUT, left_out
@@ -32,7 +32,6 @@ SAME_LENGTH, ONE_BODY = 1e-3, 0.1  # of the length: one length; two lengths of o
 SCALED_UNSAID = "parameter_file.scaled"  # SI values of a person who did not say what they do at other speeds
 
 
-@brief
 @dataclass(frozen=True, slots=True)
 class Replaced:
     """One coefficient that another file gives.
@@ -52,7 +51,6 @@ class Replaced:
     after: Coefficient | None
 
 
-@brief
 @dataclass(frozen=True, slots=True)
 class Merged:
     """A file of which some numbers came from another.
@@ -139,10 +137,7 @@ def merged(
     _refuse_other_tables(other, base)
     if not taken and not other.models:
         has = "estimates only" if any(c.status is Status.ESTIMATE for c in theirs.coefficients) else _nothing(other)
-        raise InputError(
-            f"{has} in {other.name}, nothing to replace others with", "a fitted or measured coefficient",
-            advice="Give a campaign, or a parameter file, of measured or computed tables.",
-        )  # fmt: skip
+        raise input_error("vehicle.nothing_measured", has=has, name=other.name)
     slopes = {plain_name(s) for s, i in taken.items() if theirs.coefficients[i].law != "rest"} - {"X0"}
     curved = {_place(s) for s in taken if not (alone and s in ours)} - {None}
     entries: list[Entry] = []
@@ -247,10 +242,7 @@ def _lengths(base: ParameterFile, other: ParameterFile, own: Scaling) -> str:
     """That the primes of both have different lengths, in words; empty where they are one."""
     if abs(own.length / base.scaling.length - 1.0) < SAME_LENGTH:
         return ""
-    return (
-        f"lengths differ: the numbers of {other.name} are by {own}, the vehicle's by {base.scaling}. The numbers are converted, as of one body "
-        "with two lengths; those of a scale model would be wrong: make the vehicle at the model's size"
-    )
+    return text_of("vehicle.lengths_differ", name=other.name, own=own, scaling=base.scaling)
 
 
 def _scaled(base: ParameterFile, other: ParameterFile, own: Scaling) -> tuple[Finding, ...]:

@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
@@ -18,8 +17,8 @@ from coeflab.core.axes import Datum, datum_name
 from coeflab.core.declarations import validated
 from coeflab.core.errors import InputError, shown, together
 from coeflab.core.finding import Finding, Severity
-from coeflab.core.texts import words
-from coeflab.core.types import Array, brief
+from coeflab.core.texts import input_error, words
+from coeflab.core.types import Array, dataclass
 from coeflab.core.units import also_written, positive_typed, three_typed, unit_ratio
 from coeflab.core.version import VERSION
 from coeflab.core.wording import listed, repeated
@@ -52,7 +51,6 @@ _TYPED = re.compile(
 )
 
 
-@brief
 @dataclass(frozen=True, slots=True)
 class OwnNumber:
     """One number as it was typed.
@@ -124,15 +122,11 @@ def own_number(typed: str) -> OwnNumber:
     is_prime = symbol.endswith("'")
     unit = units[0] or units[1]
     if is_prime and unit:
-        raise InputError(
-            f"the unit {shown(unit)} behind the prime {symbol}", "no unit", column="--set",
-            advice=f"For an SI value write {d.text}= without the prime.",
-        )  # fmt: skip
+        raise input_error("vehicle.unit_behind_prime", column="--set", unit=shown(unit), symbol=symbol, text=d.text)
     if is_prime and over_speed:
-        raise InputError(
-            f"{over_speed[0]} behind the prime {symbol}", "an SI value before it", column="--set",
-            advice=f"A prime is scaled. For a constant write {d.text}= with its unit.",
-        )  # fmt: skip
+        raise input_error(
+            "vehicle.speed_behind_prime", column="--set", over_speed=over_speed[0], symbol=symbol, text=d.text
+        )
     ratios = [1.0 if is_prime else unit_ratio(u, d.unit) for u in units]
     if ratios[0] is None or (u95 is not None and ratios[1] is None and match["of"] != "%"):
         raise InputError(
@@ -164,10 +158,7 @@ def own_numbers(typed: Sequence[str | OwnNumber]) -> tuple[OwnNumber, ...]:
     if twice := repeated(n.symbol for n in out):
         raise InputError(f"{', '.join(twice)} twice", "each symbol once", column="--set")
     for slope, names in one_slope(n.symbol for n in out).items():
-        raise InputError(
-            f"{listed(names)}, which are one slope", f"one of them; {slope} is their sum", column="--set",
-            advice="Both act in the law, and a straight course feels their sum.",
-        )  # fmt: skip
+        raise input_error("vehicle.are_one_slope", column="--set", names=listed(names), slope=slope)
     return out
 
 
@@ -257,9 +248,7 @@ def mass_of(mass: float, centre: Array | None, inertia: Sequence[float] = ()) ->
         Two moments of inertia, or some that no body has.
     """
     if len(inertia) not in (0, 1, 3):
-        raise InputError(
-            f"{len(inertia)} moments of inertia", "IX,IY,IZ, or the transverse one alone", column="--inertia"
-        )
+        raise input_error("vehicle.moments_of_inertia", column="--inertia", n_inertia=len(inertia))
     place = np.zeros(3) if centre is None else np.asarray(centre)
     x = float(place[0])
     about = np.diag(inertia) + parallel_axis(mass, place) if len(inertia) == 3 else None
@@ -326,8 +315,7 @@ def typed_file(
     weighed = None
     if mass:
         if not cg and about.strip() != "cg":
-            raise InputError(f"a mass without its centre, about {about}", "X,Y,Z, m, FRD", column="--cg",
-                             advice="Add --cg, or state the numbers about cg.")  # fmt: skip
+            raise input_error("vehicle.mass_without_centre", column="--cg", about=about)
         heavy = positive_typed(mass, "mass", "--mass")
         if doubt := doubtful_mass(heavy, conditions.density, scaling):
             raise InputError(f"{heavy:g} kg", "a usual mass of what swims", column="--mass", advice=f"{doubt}.")
@@ -341,9 +329,7 @@ def typed_file(
     afloat = None
     if volume or cb:
         if not (volume and cb):
-            raise InputError(
-                "nothing", "volume and centre of buoyancy together", column="--cb" if volume else "--volume"
-            )
+            raise input_error("vehicle.volume_or_centre_alone", column="--cb" if volume else "--volume")
         afloat = ParameterHydrostatics(
             volume=positive_typed(volume, "volume", "--volume"), centre_of_buoyancy=three_typed(cb, "length", "--cb")
         )

@@ -32,7 +32,7 @@ from coeflab.core.text.bounded import own_bytes
 from coeflab.core.text.json import parse_json
 from coeflab.core.text.model_kinds import model_kind
 from coeflab.core.text.toml import read_text, read_toml
-from coeflab.core.texts import remark
+from coeflab.core.texts import input_error, remark
 from coeflab.core.types import in_angles
 from coeflab.core.units import also_written, same_unit
 from coeflab.core.wording import repeated
@@ -405,10 +405,7 @@ def file_typed(path: Path) -> Path:
     if is_body:
         head = read_toml(body).content.get("body")
         if isinstance(head, dict) and head.get("reader") == "arm":
-            raise InputError(
-                f"{shown(str(path), 300)}, a vehicle with an arm, which has no parameter file", "a parameter file",
-                advice=f"Write its equations: coeflab derive {path} --to c. Simulate it: coeflab simulate {path}.",
-            )  # fmt: skip
+            raise input_error("vehicle.vehicle_with_arm", path=shown(str(path), 300), path_2=path)
     try:
         return named(path, SHIPPED)
     except InputError as why:
@@ -426,10 +423,7 @@ def refuse_shape(path: Path) -> None:
         It is one of these.
     """
     if path.suffix.lower() in MESHES and path.is_file():
-        raise InputError(
-            "a mesh", "a parameter file", file=path,
-            advice=f"Make one: coeflab vehicle {path} --unit mm --axes FLU --mass MASS, with the mesh's own unit and axes.",
-        )  # fmt: skip
+        raise input_error("vehicle.mesh_for_a_file", file=path, path=path)
     if path.is_dir():
         inside = [str(p) for p in sorted(path.glob(SHIPPED))]
         more = f" and {len(inside) - MOST_NAMED} more" if len(inside) > MOST_NAMED else ""
@@ -456,10 +450,7 @@ def read_parameter_file(path: Path) -> ParameterFile:
     refuse_shape(path)
     text = read_text(path, JSON_BYTES)
     if kind := model_kind(text):
-        raise InputError(
-            f"{kind}, a simulator's model", "a parameter file in JSON", file=path,
-            advice=f"Read it by: coeflab params check {path}. Only parameter files are exported, compared and simulated.",
-        )  # fmt: skip
+        raise input_error("vehicle.simulator_model", file=path, simulator=kind, path=path)
     content = parse_json(text, path, "a parameter file in JSON")
     if not isinstance(content, dict):
         raise InputError(f"a {type(content).__name__}", "an object", file=path, column="file")

@@ -12,6 +12,7 @@ from pydantic import Field, model_validator
 
 from coeflab.core.errors import InputError, shown
 from coeflab.core.stored import Finite, Means, Name, NotNegative, Positive, RefusedError
+from coeflab.core.texts import input_error
 from coeflab.core.types import Array
 from coeflab.law.domain import Domain, Extrapolation
 from coeflab.law.force_law import WIND
@@ -223,10 +224,7 @@ def chosen(models: tuple[ParameterModel, ...], response: str, variables: tuple[s
         No models, no such response, an unknown variable, or one without values.
     """
     if not models:
-        raise InputError(
-            "a parameter file without fitted tables", "one with models",
-            advice="Run a study with a fit such as polynomial or surface.",
-        )  # fmt: skip
+        raise input_error("vehicle.parameter_file_without_fitted")
     wanted = response.removesuffix("'")
     found = [m for m in models if not response or m.response.removesuffix("'") == wanted]
     if not found:

@@ -7,7 +7,6 @@ Whether damping damps, its rates are in radians, and both planes are written in 
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -16,7 +15,7 @@ from numpy.typing import NDArray
 from coeflab.core.finding import Severity
 from coeflab.core.table import Check, as_check
 from coeflab.core.texts import known
-from coeflab.core.types import brief
+from coeflab.core.types import dataclass
 from coeflab.law.added_mass import ROUNDING, definiteness
 from coeflab.law.rigid_body import about_another, ideal_quadratics
 from coeflab.law.symbols import COMPONENTS, LINEAR, MOTIONS, derivative, primed
@@ -63,29 +62,24 @@ def added_mass_findings(p: ParameterFile, signs: str = "") -> list[Check]:
     """Zeros, signs, symmetry, definiteness and size; at least one finding. ``signs`` as in `plausibility`."""
     stated = stated_matrix(p)
     if not np.any(np.nan_to_num(stated)):
-        return [
-            _added_mass_check("added mass", Severity.WARN, "none", "a matrix", "The body accelerates as if in air.")
-        ]
+        return [Check.of("plausibility.no_added_mass", "added mass", Severity.WARN)]
     matrix = np.nan_to_num(np.where(np.isnan(stated), stated.T, stated))
     out = _diagonal(np.diag(stated), signs)
     unknown = np.isnan(np.diag(stated)) & np.any(matrix, axis=1)
     if np.any(unknown):
-        out.append(_added_mass_check("M_A", Severity.WARN, f"no {_names(unknown)}", "a diagonal together with its products",
-                          "Its products cannot be used."))  # fmt: skip
+        out.append(Check.of("plausibility.no_diagonal", "M_A", Severity.WARN, unknown=_names(unknown)))
         matrix = np.where(unknown[:, None] | unknown, 0.0, matrix)
     out += _asymmetry(matrix)
     found = definiteness((matrix + matrix.T) / 2.0)
     if np.all(np.diag(matrix) >= 0.0) and found.smallest < -ROUNDING:
         least = "without a bound" if np.isinf(found.smallest) else f"{found.smallest:.3g}"
-        out.append(_added_mass_check("M_A", Severity.FAIL, f"smallest scaled eigenvalue {least}", "not below zero",
-                          "No kinetic energy: a product entry is too large for its diagonals."))  # fmt: skip
+        out.append(Check.of("plausibility.not_definite", "M_A", Severity.FAIL, least=least))
     elif not out:
-        out.append(_added_mass_check("M_A", Severity.PASS, f"smallest scaled eigenvalue {found.smallest:.3g}",
-                          "symmetric, not below zero"))  # fmt: skip
+        out.append(Check.of("plausibility.definite", "M_A", Severity.PASS, smallest=found.smallest))
     return out + _size(p, np.diag(matrix)[:3])
 
 
-def _added_mass_check(subject: str, severity: Severity, statistic: str, rule: str, comment: str = "") -> Check:
+def _check(subject: str, severity: Severity, statistic: str, rule: str, comment: str = "") -> Check:
     return Check(NAME, subject, severity, statistic, rule, comment)
 
 
@@ -98,12 +92,11 @@ def _diagonal(stated: Array, signs: str) -> list[Check]:
     negative = np.nan_to_num(stated) < 0.0
     if np.any(negative):
         values = ", ".join(f"{x:.4g}" for x in stated[negative])
-        out.append(_added_mass_check(f"M_A {_names(negative)}", Severity.FAIL, values, "not below zero",
+        out.append(_check(f"M_A {_names(negative)}", Severity.FAIL, values, "not below zero",
                           f"Acceleration derivatives are the negatives of added masses: a sign is wrong. {signs}".rstrip()))  # fmt: skip
     across = (stated == 0.0) & (np.arange(6) < 3)
     if np.any(across):
-        out.append(_added_mass_check(f"M_A {_names(across)}", Severity.WARN, "0", "above zero",
-                          "The body accelerates in this direction as if in air."))  # fmt: skip
+        out.append(Check.of("plausibility.zero_diagonal", f"M_A {_names(across)}", Severity.WARN))
     return out
 
 
@@ -111,15 +104,14 @@ def _size(p: ParameterFile, diagonal: Array) -> list[Check]:
     out = []
     prime = float(np.max(diagonal[1:])) / p.scaling.unit("m", p.conditions.density)
     if p.scaling.length_name != "1 m" and 0.0 < prime < SMALLEST_PRIME:
-        out.append(_added_mass_check("M_A Yv, Zw", Severity.FAIL, f"{prime:.1e} of 1/2 rho L^3", f"at least {SMALLEST_PRIME:g}",
+        out.append(_check("M_A Yv, Zw", Severity.FAIL, f"{prime:.1e} of 1/2 rho L^3", f"at least {SMALLEST_PRIME:g}",
                           "Primes read as SI? Convert them; in a .m file r3 = rho*L^3/2 shows that they are primes."))  # fmt: skip
     if p.mass is not None and (heaviest := float(np.max(diagonal))) > HEAVY * p.mass.mass:
-        out.append(_added_mass_check("M_A", Severity.WARN, f"{heaviest / p.mass.mass:.3g} of the mass", f"at most {HEAVY:g}",
+        out.append(_check("M_A", Severity.WARN, f"{heaviest / p.mass.mass:.3g} of the mass", f"at most {HEAVY:g}",
                           "Usual for flat bodies only."))  # fmt: skip
     across = diagonal[1:][diagonal[1:] > 0.0]
     if p.mass is not None and across.size and not _in_air(p) and (share := float(np.max(across)) / p.mass.mass) < LIGHT:
-        out.append(_added_mass_check("M_A Yv, Zw", Severity.WARN, f"{share:.2g} of the mass", f"at least {LIGHT:g}",
-                          "A ball has 0.5 of the water that it displaces, a slender body 0.9 across. Is one in another unit?"))  # fmt: skip
+        out.append(Check.of("plausibility.small_across", "M_A Yv, Zw", Severity.WARN, share=share, light=LIGHT))
     return out
 
 
@@ -132,7 +124,7 @@ def _asymmetry(matrix: Array) -> list[Check]:
         if apart > ROUNDING:
             severity = Severity.WARN if apart <= MISTYPED else Severity.FAIL
             pair = f"M_A {COMPONENTS[i]}{MOTIONS[j]} and {COMPONENTS[j]}{MOTIONS[i]}"
-            out.append(_added_mass_check(pair, severity, f"{matrix[i, j]:.8g} and {matrix[j, i]:.8g}", "equal",
+            out.append(_check(pair, severity, f"{matrix[i, j]:.8g} and {matrix[j, i]:.8g}", "equal",
                               f"Apart by {apart:.1e} of the diagonal. An added mass is symmetric."))  # fmt: skip
     return out
 
@@ -145,7 +137,6 @@ ALIKE = 0.01
 PARTNERS = (*OPPOSITE, *EQUAL, ("Nr|r|", "Mq|q|"), ("Yv|v|", "Zw|w|"))
 
 
-@brief
 @dataclass(frozen=True, slots=True)
 class _Own:
     """A term of a motion on itself."""
@@ -164,19 +155,13 @@ def damping_findings(p: ParameterFile, signs: str = "") -> list[Check]:
         out += _by_tables(p)
     elif not any(c.severity is Severity.FAIL for c in out) and not any(t.coefficient > 0.0 for t in products):
         several = f"{len(own) + len(products)} terms of a motion on itself"
-        out.append(_damping_check("damping", Severity.PASS, several, "below zero"))
+        out.append(Check.of("plausibility.damps", "damping", Severity.PASS, found=several))
     return [*out, *_rates(p, own), *_mirrored(p), *_partners(p), *_ideal_products(p)]
-
-
-def _damping_check(subject: str, severity: Severity, statistic: str, rule: str, comment: str = "") -> Check:
-    return Check(NAME, subject, severity, statistic, rule, comment)
 
 
 def _by_tables(p: ParameterFile) -> list[Check]:
     """What the fitted tables do against each motion alone, forward speed aside: its power at `PROBE` of speed and of U/L."""
-    nothing = _damping_check(
-        "damping", Severity.WARN, "none of X0', Xu, Yv, Zw, Kp, Mq, Nr", "at least one", "Nothing damps."
-    )
+    nothing = Check.of("plausibility.nothing_damps", "damping", Severity.WARN)
     nu = np.zeros((12, 6))
     nu[:, 0] = p.conditions.speed
     unit = p.conditions.speed * np.where(np.arange(6) < 3, 1.0, 1.0 / p.scaling.length)
@@ -191,10 +176,9 @@ def _by_tables(p: ParameterFile) -> list[Check]:
     drives = [f"{c} with {m}" for c, m, x in zip(COMPONENTS, MOTIONS, power, strict=True) if x > 0.0]
     out = []
     if drives:
-        out.append(_damping_check("damping", Severity.WARN, f"tables: {', '.join(drives)}", "against the motion",
-                          "The tables drive what they should damp: is a sign wrong?"))  # fmt: skip
+        out.append(Check.of("plausibility.tables_drive", "damping", Severity.WARN, drives=", ".join(drives)))
     if damps:
-        out.append(_damping_check("damping", Severity.PASS, f"tables: {', '.join(damps)}", "against the motion"))
+        out.append(Check.of("plausibility.tables_damp", "damping", Severity.PASS, damps=", ".join(damps)))
     return out or [nothing]
 
 
@@ -247,13 +231,13 @@ def _signs(own: list[_Own], signs: str, p: ParameterFile) -> list[Check]:
     drives = _driving(own, p)
     if drives:
         it = "It drives the motion that it" if len(drives) == 1 else "They drive the motions that they"
-        out.append(_damping_check(", ".join(primed(o.term.symbol) for o in drives), Severity.FAIL,
+        out.append(_check(", ".join(primed(o.term.symbol) for o in drives), Severity.FAIL,
                           ", ".join(f"{o.term.coefficient:.4g}" for o in drives) + " (SI)", "below zero",
                           f"{it} should damp: a sign is wrong. {signs}".rstrip()))  # fmt: skip
     for o in own:
         if not o.odd and o.term.component in "YKN":
             name = primed(o.term.symbol)
-            out.append(_damping_check(name, Severity.WARN, f"{o.term.coefficient:.4g} (SI)",
+            out.append(_check(name, Severity.WARN, f"{o.term.coefficient:.4g} (SI)",
                               "zero for a body symmetric port to starboard",
                               f"It pushes one way in both directions; {name[0]}{o.motion}|{o.motion}|' is meant?"))  # fmt: skip
     return out
@@ -279,7 +263,7 @@ def _rates(p: ParameterFile, own: list[_Own]) -> list[Check]:
                 usual = a.term.coefficient * (diagonal[j] / diagonal[i]) ** (0.5 * (n + 1))
                 same_way = b.term.coefficient * float(np.sign(usual))
                 if 0.0 < same_way < SMALLEST[n] * abs(usual):
-                    out.append(_damping_check(
+                    out.append(_check(
                         primed(b.term.symbol), Severity.WARN, f"{b.term.coefficient:.4g}, {same_way / abs(usual):.2g} of k^{n + 1} {a.term.symbol}",
                         f"at least {SMALLEST[n]:g}; k = {(diagonal[j] / diagonal[i]) ** 0.5:.3g} m of the added mass",
                         "Is it per degree and second? Rates are in rad/s.",
@@ -309,7 +293,7 @@ def _mirrored(p: ParameterFile) -> list[Check]:
             pairs, values = (
                 "; ".join(x) for x in zip(*((n, f"{x:.4g} and {y:.4g}") for n, x, y in found), strict=True)
             )
-            out.append(_damping_check(pairs, Severity.WARN, values, rule, comment))
+            out.append(_check(pairs, Severity.WARN, values, rule, comment))
     return out
 
 
@@ -325,12 +309,7 @@ def _partners(p: ParameterFile) -> list[Check]:
             continue
         if not _alike(abs(first.value_si), abs(second.value_si), MISTYPED):
             found.append((f"{a} and {b}", f"{first.value_si:.4g} and {second.value_si:.4g} (SI)"))
-    return [
-        _damping_check(
-            pair, Severity.NOTE, values, "of one size", "The added mass is alike in both planes, these are not."
-        )
-        for pair, values in found
-    ]
+    return [Check.of("plausibility.partners_apart", pair, Severity.NOTE, found=values) for pair, values in found]
 
 
 def _same_size(p: ParameterFile, a: str, b: str, sign: float) -> tuple[str, float, float] | None:
@@ -355,7 +334,7 @@ def _ideal_products(p: ParameterFile) -> list[Check]:
                     wrong.append((primed(t.symbol), t.coefficient, theory))
     if not wrong or not right:  # all of them reversed is a simulator's own convention
         return []
-    return [_damping_check(
+    return [_check(
         ", ".join(w[0] for w in wrong), Severity.WARN, "; ".join(f"{x:.4g}, by the added mass {y:.4g}" for _, x, y in wrong),
         "Kirchhoff's equations", "Of the size that the added mass gives, and the other sign: a sign is wrong.",
     )]  # fmt: skip
@@ -455,7 +434,7 @@ def _units(p: ParameterFile) -> list[Check]:
     density = p.conditions.density
     span = f"{imported_numbers.AIR[0]:g} to {imported_numbers.AIR[1]:g} kg/m^3"
     out = [
-        Check(NAME, "density", Severity.PASS, f"{density:g}", span, "Air.")
+        Check.of("plausibility.air", "density", Severity.PASS, density=density, rule_is=span)
         if _in_air(p)
         else imported_numbers.water(NAME, density)
     ]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 from enum import StrEnum
 from pathlib import Path
 from types import MappingProxyType
@@ -18,7 +18,8 @@ from coeflab.core.errors import InputError, shown
 from coeflab.core.finding import Finding, Severity
 from coeflab.core.table import in_digits_of
 from coeflab.core.text.toml import read_toml
-from coeflab.core.types import brief, locking
+from coeflab.core.texts import input_error, text_of
+from coeflab.core.types import dataclass, locking
 from coeflab.core.units import quantity
 from coeflab.law.coefficient import Coefficient, CoefficientSet
 from coeflab.law.scaling import Scaling
@@ -38,8 +39,7 @@ class Relation(StrEnum):
     def meaning(self) -> str:
         """In words."""
         return {
-            Relation.RE_ANALYSIS: "our fit and the authors' own evaluation of the same data; it passes when the difference lies within "
-            "our U95 alone",
+            Relation.RE_ANALYSIS: text_of("vehicle.re_analysis"),
             Relation.CROSS_BODY: "another body or another method: compared, no verdict",
             Relation.QUOTED: "quoted from another column, no verdict of its own",
         }[self]
@@ -54,7 +54,6 @@ class PublishedValue:
     value: float | None
 
 
-@brief
 @dataclass(frozen=True, slots=True)
 class Literature:
     """Published values that may enter a parameter file, with their stated relative uncertainty."""
@@ -65,7 +64,6 @@ class Literature:
     values: tuple[PublishedValue, ...]
 
 
-@brief
 @dataclass(frozen=True, slots=True, eq=False)
 @locking("reference_point")
 class Reference:
@@ -122,7 +120,6 @@ class Reference:
         return tuple((s.length_name, published.value * s.ratio(symbol, to)) for s in lengths)
 
 
-@brief
 @dataclass(frozen=True, slots=True)
 class Comparison:
     """Ours against one published value.
@@ -348,10 +345,7 @@ class ReferenceKeys(takes.Declaration):
             if key not in INFERRED:
                 raise InputError(shown(key), f"one of {', '.join(INFERRED)}", column=f"inferred.{key}")
         if self.relation == Relation.RE_ANALYSIS and not self.campaigns:
-            raise InputError(
-                "a re-analysis without campaigns", 'campaigns = ["NAME"], the campaigns whose tables it evaluates', column="campaigns",
-                advice='Add campaigns, or say relation = "cross-body" for another body or method.',
-            )  # fmt: skip
+            raise input_error("vehicle.re_analysis_without_campaigns", column="campaigns")
         _ = self.made
 
     @property

@@ -6,11 +6,9 @@ by 1 - cos(beta) in drift. The resistance X0 U^2 alone stands whole, as u|u| + v
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
-from coeflab.core.types import Array, brief, locking
+from coeflab.core.types import Array, dataclass, locking
 from coeflab.law.force_law import ForceLaw, ForceTerm
 from coeflab.law.symbols import COMPONENTS, MOTIONS
 
@@ -20,7 +18,6 @@ SURGE = 0
 ACROSS = (1, 2)
 
 
-@brief
 @dataclass(frozen=True, slots=True, eq=False)
 @locking("linear signed absolute")
 class SecondOrder:

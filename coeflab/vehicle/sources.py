@@ -11,7 +11,7 @@ unless a source along the body speaks of what that makes: Yv' holds -D sin(beta)
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from itertools import combinations
 
 import numpy as np
@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 
 from coeflab.core.errors import InputError
 from coeflab.core.finding import Finding, Severity
-from coeflab.core.types import brief
+from coeflab.core.types import dataclass
 from coeflab.law.force_law import CONTROLS, EVERYWHERE, WIND, ForceTerm
 from coeflab.law.symbols import COMPONENTS, MOTIONS, primed
 from coeflab.vehicle.parameter_model import ANGLE_OF, ParameterModel
@@ -46,7 +46,6 @@ def name_of(model: ParameterModel) -> str:
     return f"{model.response} over {' and '.join(model.names)}"
 
 
-@brief
 @dataclass(frozen=True, slots=True, eq=False)
 class TableSource:
     """A fitted table as a source.
@@ -107,7 +106,6 @@ class TableSource:
         return self.model.contains_potential and not self.needed & set(CONTROLS)
 
 
-@brief
 @dataclass(frozen=True, slots=True, eq=False)
 class Sources:
     """What the law of a file is the sum of.

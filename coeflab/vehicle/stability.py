@@ -11,12 +11,12 @@ Feldman (1979); Roddy (1990) Table 4: G = 1 - N_v (Y_r - m) / [Y_v (N_r - x_G m)
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
 from coeflab.core.table import number, plus_minus, with_u95
-from coeflab.core.types import Array, brief
+from coeflab.core.types import Array, dataclass
 from coeflab.core.wording import listed
 from coeflab.fits.uncertainty.propagation import Propagated, propagate, reaches_zero
 from coeflab.law.coefficient import CoefficientSet
@@ -59,7 +59,6 @@ FRACTION = (
 )
 
 
-@brief
 @dataclass(frozen=True, slots=True)
 class Derived:
     """One quantity.

@@ -20,7 +20,7 @@ from coeflab.report.document import AnswerRow
 from coeflab.report.figures import estimator, first_page, laws, model, motion, nouns, sweep, three_views
 from coeflab.report.figures.files import drawing, files_of, styled
 from coeflab.report.figures.palette import COLOURS
-from coeflab.report.plots.forest import plot_forest
+from coeflab.report.plots import plot_forest
 
 mpl.use("agg")
 

@@ -53,7 +53,12 @@ def test_every_code_that_the_source_makes_has_a_template() -> None:
 
 
 def test_every_refusal_has_its_words_and_hands_over_their_facts() -> None:
-    refusals = {f"{s}.{code}": words for s in SUBJECTS for code, words in templates(s).items() if "found" in words}
+    refusals = {
+        f"{s}.{code}": words
+        for s in SUBJECTS
+        for code, words in templates(s).items()
+        if isinstance(words, dict) and "found" in words
+    }
     place = {"file", "line", "column", "key", "where", "kind", "row", "name"}
     for file, text in texts().items():
         for call in (n for n in ast.walk(ast.parse(text)) if isinstance(n, ast.Call)):

@@ -98,6 +98,12 @@ def remark(finding: Finding) -> str:
     return f"{text.statement}{stop} {text.advice}".strip()
 
 
+def text_of(code: str, **facts: object) -> str:
+    """A sentence by its code, its facts set as Python's own format sets them."""
+    subject, _, what = code.partition(".")
+    return str(templates(subject)[what]).format_map(facts)
+
+
 def input_error(
     code: str,
     file: str | Path | None = None,

@@ -8,13 +8,13 @@ What a joint fit says about its equations and about rows that it has not seen.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from itertools import accumulate, pairwise
 
 import numpy as np
 
-from coeflab.core.errors import InputError
-from coeflab.core.types import Array, brief
+from coeflab.core.texts import input_error
+from coeflab.core.types import Array, dataclass
 from coeflab.core.wording import finite
 from coeflab.fits.joint.rows import Component, Constraint, constraint_of, linked
 from coeflab.fits.results.fit_result import CampaignShare, Pooling
@@ -207,7 +207,6 @@ def _values_alone(
 NO_CAMPAIGN = "Each campaign left out in turn: needs two campaigns."
 
 
-@brief
 @dataclass(frozen=True, slots=True, eq=False)
 class JointFit:
     """Models of all components.
@@ -250,10 +249,9 @@ def _excited(parts: Sequence[Component], constraint: Constraint) -> None:
         empty = [s for s in p.idle if not named[at + p.symbols.index(s)]]
         at += p.width
         if empty:
-            raise InputError(
-                f"{', '.join(empty)} zero on every row of {p.data.rows.campaign}", "terms that the data excite",
-                column="terms", advice="Leave these terms out, or add runs in which their motion occurs.",
-            )  # fmt: skip
+            raise input_error(
+                "fits.zero_on_every_row", column="terms", empty=", ".join(empty), campaign=p.data.rows.campaign
+            )
 
 
 def _several(
@@ -271,8 +269,7 @@ def _several(
             n_runs,
         )
     except ValueError as why:
-        raise InputError(str(why), "equations that some coefficients can meet", column="constraints",
-                         advice="Two of the equations contradict each other. Remove one.") from None  # fmt: skip
+        raise input_error("fits.equations_some_coefficients_can", column="constraints", found=str(why)) from None
     # Equations make some coefficients multiples of each other; that is no collinearity of the rows.
     by_rows = np.where(np.abs(fit.correlation) > 1.0 - 1e-9, 0.0, fit.correlation)
     said = in_words(replace(fit, correlation=by_rows), tuple(s for p in parts for s in p.every_symbol))

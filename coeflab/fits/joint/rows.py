@@ -8,7 +8,7 @@ A force component of a joint fit, and the equations that tie components together
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from itertools import accumulate
 
 import numpy as np
@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from coeflab.core.axes import ANYWHERE
 from coeflab.core.errors import InputError, ScalingMismatchError, shown
-from coeflab.core.types import Array, brief
+from coeflab.core.types import Array, dataclass
 from coeflab.fits.results.fitted_model import SetAside, joined
 from coeflab.fits.rows.regression import Area, Rows, collect, response, variable
 from coeflab.fits.rows.too_few import TooFewRowsError
@@ -28,7 +28,6 @@ from coeflab.law.terms import Equation, NamedTerm, design, read_term
 from coeflab.tables.force_table import AT_REST, ForceTable, counted_once
 
 
-@brief
 @dataclass(frozen=True, slots=True, eq=False)
 class JointRows:
     """Rows of one response over all tables that have it.
@@ -267,7 +266,6 @@ def _each(by: dict[str, ForceTable], what: Callable[[ForceTable], str]) -> str:
 Constraint = tuple[Array, Array]
 
 
-@brief
 @dataclass(frozen=True, slots=True, eq=False)
 class Component:
     """One force component of a joint fit.

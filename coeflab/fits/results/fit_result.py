@@ -6,7 +6,6 @@ What every campaign adds to a joint fit, and whether one law serves them all.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from math import isinf, isnan
 from typing import Any
 
@@ -16,7 +15,7 @@ from numpy.typing import NDArray
 from coeflab.core.cards import html_by
 from coeflab.core.finding import Finding
 from coeflab.core.table import plus_minus
-from coeflab.core.types import Array, brief, in_angles, locking
+from coeflab.core.types import Array, dataclass, in_angles, locking
 from coeflab.fits.results.fitted_model import UNLIKELY, FittedModel, OutOfSample, chance
 from coeflab.fits.results.oscillation import Oscillation
 from coeflab.fits.results.straight_runs import StraightRuns
@@ -31,7 +30,6 @@ from coeflab.tables.force_table import ForceTable
 DOUBTFUL = 0.1  # not rejected, but one in ten: worth a sentence
 
 
-@brief
 @dataclass(frozen=True, slots=True)
 class CampaignShare:
     """One campaign in the fit of one component.
@@ -60,7 +58,6 @@ class CampaignShare:
     left_out: OutOfSample
 
 
-@brief
 @dataclass(frozen=True, slots=True)
 class Pooling:
     """One component of a joint fit by campaign.
@@ -164,7 +161,6 @@ class LeftOut:
     reason: str
 
 
-@brief
 @dataclass(frozen=True, slots=True, eq=False)
 @locking("x y curve fitted by_row se")
 class Sweep:
@@ -291,7 +287,6 @@ class Sweep:
         return np.setdiff1d(np.flatnonzero(np.logical_not(self.used)), self.wrong)
 
 
-@brief
 @dataclass(frozen=True, slots=True, eq=False)
 @locking("moves")
 class Tied:
@@ -315,7 +310,6 @@ class Tied:
     set_up: tuple[tuple[str, str, float], ...]
 
 
-@brief
 @dataclass(frozen=True, slots=True, eq=False)
 @locking("covariance")
 class Shared:

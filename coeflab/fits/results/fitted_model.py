@@ -10,7 +10,7 @@ What a model is worth on rows that it has not seen, as a share of the response's
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from itertools import combinations
 from math import isnan
 from typing import Any
@@ -19,7 +19,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from coeflab.core.cards import html_by
-from coeflab.core.types import Array, brief, in_angles, locking
+from coeflab.core.texts import text_of
+from coeflab.core.types import Array, dataclass, in_angles, locking
 from coeflab.fits.statistics.groups import predict_left_out, thirds
 from coeflab.fits.statistics.linear_model import LinearFit, fit_linear, t_probability
 from coeflab.fits.statistics.remainder import Remainder
@@ -30,7 +31,6 @@ from coeflab.law.terms import Term, canonical, design
 from coeflab.tables.force_table import AT_REST, SAME_SIZE, ForceTable
 
 
-@brief
 @dataclass(frozen=True, slots=True, eq=False)
 @locking("x y")
 class SetAside:
@@ -189,10 +189,7 @@ class FittedModel:
         sizes = np.abs(self.x[v])[np.abs(self.x[v]) > AT_REST]
         if not len(sizes) or float(np.ptp(sizes)) > SAME_SIZE * float(sizes.max()):
             return ""
-        return (
-            f"all rows that turn have one |{v}'|, {np.median(sizes):.3g}: {self.symbols[i]} stands for all powers of {v}' together there "
-            "(a secant) and is not determined as a derivative"
-        )
+        return text_of("fits.one_rate", v=v, sizes=np.median(sizes), symbols=self.symbols[i])
 
     @property
     def secants(self) -> tuple[str, ...]:
@@ -486,10 +483,7 @@ class OutOfSample:
             return f"{self.how}: the left-out rows do not vary, so no error is given as a share of their range."
         missing = self.rows - self.predicted
         if not self.told:
-            return (
-                f"{self.how}: the remaining rows determine only {self.predicted} of {self.rows} left-out rows, so no "
-                "error is given."
-            )
+            return text_of("fits.too_few_rows_left", how=self.how, predicted=self.predicted, rows=self.rows)
         rest = f"; {missing} of {self.rows} rows are not determined by the others" if missing else ""
         return (
             f"{self.how}: the left-out rows are predicted to {100 * self.rms:.2f} % rms, {100 * self.largest:.2f} % at "

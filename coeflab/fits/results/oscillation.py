@@ -2,15 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
-from coeflab.core.types import Array, brief, locking
+from coeflab.core.types import Array, dataclass, locking
 from coeflab.fits.statistics.harmonics import CUBIC, QUADRATIC, AtZero
 
 
-@brief
 @dataclass(frozen=True, slots=True, eq=False)
 @locking("sizes theta measured fitted")
 class OscillatedForce:
@@ -52,7 +49,6 @@ class OscillatedForce:
     used: bool
 
 
-@brief
 @dataclass(frozen=True, slots=True, eq=False)
 class Oscillation:
     """One force component over the runs of one motion.

@@ -2,18 +2,15 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from coeflab.core.table import plus_minus
-from coeflab.core.types import Array, brief, locked
+from coeflab.core.types import Array, dataclass, locked
 
 DOUBTFUL = 0.05  # probability of a trend as large by chance, below which there is one
 SYMBOL = "X0"
 
 
-@brief
 @dataclass(frozen=True, slots=True, eq=False)
 class StraightRuns:
     """The resistance of one table in which nothing varies but the speed.

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from coeflab.core.errors import InputError, shown
-from coeflab.core.types import Array, brief
+from coeflab.core.texts import input_error
+from coeflab.core.types import Array, dataclass
 from coeflab.fits.results.fitted_model import (
     ROUNDING,
     FittedModel,
@@ -52,7 +52,6 @@ class Area:
     length: float
 
 
-@brief
 @dataclass(frozen=True, slots=True, eq=False)
 class Rows:
     """Rows of a regression.
@@ -98,8 +97,8 @@ def variable(table: ForceTable, name: str, length: float) -> Array:
         return table.primed_motion(name, length)
     if name in ("dr", "ds", "db"):
         return np.zeros(len(table))
-    raise InputError(
-        f"the variable {shown(name)}", f"one of {', '.join((*ANGLES, *MOTIONS))}, dr, ds, db", column="variables"
+    raise input_error(
+        "fits.several_controls", column="variables", name=shown(name), names=", ".join((*ANGLES, *MOTIONS))
     )
 
 
@@ -220,10 +219,7 @@ def model_of(
     free = len(terms) - (0 if constraint is None else len(constraint[1]))
     empty = [s for s, column in zip(symbols, matrix.T, strict=True) if not np.any(column)]
     if empty:
-        raise InputError(
-            f"{', '.join(empty)} zero on every row", "terms that the data excite", column=form,
-            advice="Leave these terms out, or add runs in which their motion occurs.",
-        )  # fmt: skip
+        raise input_error("fits.zero_on_every_row_2", column=form, empty=", ".join(empty))
     if len(rows.y) <= free:
         raise TooFewRowsError.for_terms(rows.response, rows.labels, free, form)
     try:

@@ -14,7 +14,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from math import gamma, pi, sqrt
 from typing import Any
 
@@ -23,7 +23,8 @@ from numpy.typing import NDArray
 
 from coeflab.core.errors import InputError, shown
 from coeflab.core.table import coefficient, plus_minus
-from coeflab.core.types import Array, brief
+from coeflab.core.texts import input_error, text_of
+from coeflab.core.types import Array, dataclass
 from coeflab.fits.results.fit_result import LeftOut, Sweep
 from coeflab.fits.results.fitted_model import FittedModel
 from coeflab.fits.rows.regression import WIND, Area, Rows, response
@@ -43,7 +44,6 @@ FEWEST_SETTINGS = 3  # for an intercept, a slope and an error
 NEAR_ZERO = np.sin(np.radians(0.3))  # what is left of a setting of zero when a model is aligned
 
 
-@brief
 @dataclass(frozen=True, slots=True, eq=False)
 class SweepRows:
     """Rows of one sweep, with rest rows of the same campaign where a one-sided sweep has none of its own.
@@ -299,11 +299,7 @@ def only_moving(
             usable = {c: mask & still for c, mask in table.usable.items()}
             kept.append(replace(table, usable=usable, exclusions=(*table.exclusions, *moving)))
     if not kept:
-        raise InputError(
-            f"no row in which only {' and '.join(variables)} may move",
-            "a sweep over these variables",
-            column="variable",
-        )
+        raise input_error("fits.no_row_only_may", column="variable", variables=" and ".join(variables))
     return kept, tuple(statements)
 
 
@@ -338,7 +334,6 @@ class Secant:
         )
 
 
-@brief
 @dataclass(frozen=True, slots=True)
 class Explanation:
     """Whether the range of motion could explain a difference to a value from elsewhere.
@@ -472,14 +467,7 @@ def explained(here: Secant, coefficients: Mapping[int, float], reference: float,
             f"an amplitude of {x} = {harmonic_at:.3g}" if harmonic_at is not None else "no such amplitude"
         )
         if possible:
-            tail = (
-                f"{where}. The range of {x} could explain the difference if the other test went that far; its "
-                "amplitude is not known here, so this is not shown."
-            )
+            tail = text_of("fits.range_may_explain", where=where, x=x)
         else:
-            tail = (
-                f"{where}; both lie beyond the data, which end at {x} = {here.reach:.3g}, where the model is only "
-                f"extrapolated. Inside the data the range of {x} does not explain the difference; the amplitude of the "
-                "other test is not known here, and the difference is left as not explained."
-            )
+            tail = text_of("fits.beyond_data", where=where, x=x, reach=here.reach)
     return Explanation(here, reference, equal_at, harmonic_at, possible, head + tail)

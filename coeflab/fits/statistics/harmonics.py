@@ -11,13 +11,12 @@ linear damping of ITTC 7.5-02-07-04.5 (2011).
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.special import fdtrc
 
-from coeflab.core.types import Array, brief
+from coeflab.core.types import Array, dataclass
 from coeflab.fits.statistics.linear_model import t_factor, t_probability
 
 Phasors = NDArray[np.complex128]
@@ -30,7 +29,6 @@ NOTHING = (np.nan, np.nan, np.nan)
 SAME = 0.01  # relative: amplitudes or frequencies nearer than this are one
 
 
-@brief
 @dataclass(frozen=True, slots=True, eq=False)
 class Harmonics:
     """Means and harmonics of several signals over one phase: signal = Re sum_k phasor_k exp(i k theta).
@@ -132,7 +130,6 @@ def refined(time: Array, values: Array, omega: float, orders: int = 3) -> float:
     return omega
 
 
-@brief
 @dataclass(frozen=True, slots=True, eq=False)
 class Form:
     """One form of the dependence on amplitude.
@@ -159,7 +156,6 @@ class Form:
     correlation: float = 0.0
 
 
-@brief
 @dataclass(frozen=True, slots=True, eq=False)
 class AtZero:
     """What several runs say at zero amplitude.
@@ -199,7 +195,6 @@ class AtZero:
         return max(self.forms, key=lambda f: f.weight)
 
 
-@brief
 @dataclass(frozen=True, slots=True, eq=False)
 class RunScatter:
     """Scatter of the coefficients of several runs.

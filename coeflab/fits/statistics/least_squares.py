@@ -6,13 +6,12 @@ components, 4,000 synthetic campaigns, or the replicates of a wild bootstrap.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
 
-from coeflab.core.types import Array, brief
+from coeflab.core.types import Array, dataclass
 
 Index = NDArray[np.int64]
 
@@ -20,7 +19,6 @@ Index = NDArray[np.int64]
 BLOCK = 8192
 
 
-@brief
 @dataclass(frozen=True, slots=True, eq=False)
 class Factorised:
     """A factorised design matrix.

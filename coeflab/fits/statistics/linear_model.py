@@ -22,13 +22,13 @@ platform's long double can carry, and his bound of the rounding error (section 1
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.special import fdtrc, ndtr, stdtr, stdtrit
 
-from coeflab.core.types import Array, brief
+from coeflab.core.types import Array, dataclass
 from coeflab.fits.statistics.least_squares import Factorised, aicc, factorise, solve
 from coeflab.law.terms import Term, design
 
@@ -88,7 +88,6 @@ def t_probability(ratio: Array | float, freedom: Array | float) -> Array:
 DOUBLE_DIGITS = 15.5
 
 
-@brief
 @dataclass(frozen=True, slots=True, eq=False)
 class LinearFit:
     """A fitted linear model.

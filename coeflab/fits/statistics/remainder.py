@@ -12,14 +12,13 @@ A misfit of the size of the noise is not seen and not covered: no method that le
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping, Sequence
-from dataclasses import dataclass
 from itertools import combinations, product
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.special import stdtrit
 
-from coeflab.core.types import Array, brief, locked
+from coeflab.core.types import Array, dataclass, locked
 from coeflab.fits.statistics.groups import constrained_space, unit_columns
 from coeflab.fits.statistics.least_squares import BLOCK, factorise
 from coeflab.law.terms import Term
@@ -60,7 +59,6 @@ class Missing:
         return np.asarray(beyond if self.term.factors[0][2] else np.sign(x) * beyond)
 
 
-@brief
 @dataclass(frozen=True, slots=True, eq=False)
 class Remainder:
     """What the residuals say of a form.

@@ -8,11 +8,11 @@ The even coefficients of that model, the force at rest and the curvature there, 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
-from coeflab.core.types import Array, brief, remembered
+from coeflab.core.types import Array, dataclass, remembered
 from coeflab.fits.statistics import origin_slope, slope_mixture
 from coeflab.fits.statistics.diagnostics import lack_of_fit, levels
 from coeflab.fits.statistics.least_squares import Factorised, Index, aicc, factorise, solve
@@ -35,7 +35,6 @@ TERMS: dict[str, Callable[[Array], Array]] = {
 }
 
 
-@brief
 @dataclass(frozen=True, slots=True)
 class Family:
     """One form of the curve.
@@ -73,7 +72,6 @@ def design(terms: tuple[str, ...], x: Array) -> Array:
     return np.column_stack([TERMS[t](x) for t in terms])
 
 
-@brief
 @dataclass(frozen=True, slots=True, eq=False)
 class Estimate:
     """One family in one window.

@@ -11,13 +11,12 @@ log C(p, k) bounded by k log p. Inclusion frequency: Fasel et al. (2022).
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass
 from itertools import product
 
 import numpy as np
 from numpy.typing import NDArray
 
-from coeflab.core.types import Array, brief
+from coeflab.core.types import Array, dataclass
 from coeflab.fits.statistics.groups import one_standard_error, shuffled_folds
 from coeflab.law.terms import Term
 
@@ -28,7 +27,6 @@ SAME = 1.0 - 1e-9
 ZERO = 1e-12
 
 
-@brief
 @dataclass(frozen=True, slots=True)
 class Selection:
     """Chosen terms.

@@ -8,12 +8,12 @@ responses: CR2 with the degrees of freedom of Bell & McCaffrey (2002), which is 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from coeflab.core.types import Array, brief
+from coeflab.core.types import Array, dataclass
 from coeflab.fits.statistics import linear_model
 from coeflab.fits.statistics.groups import constrained_space
 from coeflab.fits.statistics.least_squares import Factorised, Index, factorise
@@ -22,7 +22,6 @@ OPEN = 1e-7
 ROUNDING = 1e-10
 
 
-@brief
 @dataclass(frozen=True, slots=True, eq=False)
 class Freed:
     """The fit without its equations, against them.

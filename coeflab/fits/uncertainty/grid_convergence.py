@@ -19,14 +19,14 @@ counts. For schemes of second order on geometrically similar grids.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from enum import StrEnum
 from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.optimize import brentq, minimize_scalar
 
-from coeflab.core.types import brief
+from coeflab.core.types import dataclass
 
 if TYPE_CHECKING:
     from coeflab.core.types import Array
@@ -57,7 +57,6 @@ class Convergence(StrEnum):
         return self not in (Convergence.DIVERGENT, Convergence.GROWING, Convergence.SLOW, Convergence.SCATTERED)
 
 
-@brief
 @dataclass(frozen=True, slots=True)
 class GridConvergence:
     """What a grid study says about the value on one of its grids.
@@ -203,7 +202,6 @@ WHY = {
 }
 
 
-@brief
 @dataclass(frozen=True, slots=True, eq=False)
 class _Study:
     """Values and relative sizes, finest first."""
@@ -275,7 +273,6 @@ SEARCHED = (0.05, 8.0)
 FEWEST = 4
 
 
-@brief
 @dataclass(frozen=True, slots=True, eq=False)
 class _Fit:
     """One expansion: its value at vanishing cell size, standard deviation, and values on the grids."""

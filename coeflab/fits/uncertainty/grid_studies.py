@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from coeflab.core.types import brief
+from coeflab.core.types import dataclass
 from coeflab.fits.uncertainty.grid_convergence import cell_sizes, fitted_convergence, grid_convergence
 from coeflab.law.symbols import LINEAR, MOTIONS
 from coeflab.tables.force_table import STUDIES
@@ -21,7 +20,6 @@ WITHOUT_PLATEAU = {"too short", "drifting", "unconverged"}
 AT_REST = 1e-4  # of the largest motion in the table: rounding of a printed angle, not a motion
 
 
-@brief
 @dataclass(frozen=True, slots=True)
 class GridStudy:
     """One force component at one setting on several grids.
@@ -90,7 +88,6 @@ def gravest(studies: tuple[GridStudy, ...]) -> GridStudy | None:
     return max(studies, key=lambda s: np.inf if s.convergence.relative is None else s.convergence.relative)
 
 
-@brief
 @dataclass(frozen=True, slots=True)
 class VariantStudy:
     """One force component at one setting, with one thing changed at a time: the domain, the turbulence model, the iterations.

@@ -11,13 +11,13 @@ An error d says that true angles are the set ones plus d, that true speed, rates
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from coeflab.core.errors import InputError
-from coeflab.core.types import brief, locking
+from coeflab.core.types import dataclass, locking
 from coeflab.fits.results.fit_result import FitResult
 from coeflab.fits.rows.regression import MOMENT_COEFFICIENTS
 from coeflab.fits.uncertainty.budget import (
@@ -172,7 +172,6 @@ ROUNDING = 1e-9
 FEWEST_DRAWS = 100  # fits that came out: 2.5 % tails of two or three
 
 
-@brief
 @dataclass(frozen=True, slots=True, eq=False)
 @locking("gradients sample nominal")
 class ModelEffects:

@@ -6,11 +6,11 @@ import math
 import warnings
 from bisect import bisect_right
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
-from coeflab.core.types import Array, brief
+from coeflab.core.types import Array, dataclass
 from coeflab.motion import manoeuvre
 from coeflab.motion.dynamics import Dynamics, rates_of_one
 
@@ -64,7 +64,6 @@ def march_adaptive(
 ONE = np.zeros(1, dtype=np.int64)
 
 
-@brief
 @dataclass(frozen=True, slots=True, eq=False)
 class _At:
     """Where the vehicle is, and what has happened."""
@@ -79,7 +78,6 @@ class _NotFiniteError(ArithmeticError):
     """Rates that are no numbers."""
 
 
-@brief
 @dataclass(frozen=True, slots=True, eq=False)
 class _Phase:
     """One phase and the orders that stand in it."""

@@ -8,8 +8,8 @@ from typing import Any
 
 import numpy as np
 
-from coeflab.core.errors import InputError
 from coeflab.core.options import bounded, measured, one_of, parse_options
+from coeflab.core.texts import input_error
 from coeflab.motion.approach import judged
 from coeflab.motion.dynamics import from_euler
 from coeflab.motion.manoeuvre import Figure, Manoeuvre, Phase, decay
@@ -55,10 +55,7 @@ def plan(vehicle: Vehicle, options: Mapping[str, Any]) -> Manoeuvre:
     """
     o = parse_options(Options, options, NAME)
     if RATES[o.motion] not in vehicle.free:
-        raise InputError(
-            f"{RATES[o.motion]} held", f"{o.motion} that may change", column=f"{NAME}.motion",
-            advice=f"Free it: --free {RATES[o.motion]}.",
-        )  # fmt: skip
+        raise input_error("motion.motion_held", column=f"{NAME}.motion", rates=RATES[o.motion], motion=o.motion)
     nu = np.zeros(6)
     nu[0] = o.speed
     attitude = from_euler(o.angle, 0.0, 0.0) if o.motion == "roll" else from_euler(0.0, o.angle, 0.0)

@@ -10,6 +10,7 @@ import numpy as np
 
 from coeflab.core.errors import InputError
 from coeflab.core.options import bounded, measured, parse_options
+from coeflab.core.texts import input_error
 from coeflab.core.types import Array
 from coeflab.motion.approach import judged
 from coeflab.motion.dynamics import from_euler
@@ -58,10 +59,7 @@ def plan(vehicle: Vehicle, options: Mapping[str, Any]) -> Manoeuvre:
     net = vehicle.weight - vehicle.buoyancy
     net = 0.0 if abs(net) < ROUNDING * vehicle.weight else net
     if abs(net) <= LEAST * vehicle.weight:
-        raise InputError(
-            f"a net weight of {net:.3g} N", "a vehicle heavier or lighter than the water that it displaces", column="hydrostatics",
-            advice="A neutral vehicle does not glide.",
-        )  # fmt: skip
+        raise input_error("motion.net_weight", column="hydrostatics", net=net)
     held = [m for m in "uwq" if m not in vehicle.free]
     if held:
         raise InputError(f"{', '.join(held)} held", "u, w and q that may change", column=NAME)

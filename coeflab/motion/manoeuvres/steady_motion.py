@@ -8,8 +8,8 @@ from typing import Any
 
 import numpy as np
 
-from coeflab.core.errors import InputError
 from coeflab.core.options import bounded, measured, orders, parse_options
+from coeflab.core.texts import input_error
 from coeflab.motion.approach import judged, thruster_orders
 from coeflab.motion.dynamics import from_euler, rotations
 from coeflab.motion.manoeuvre import Figure, Manoeuvre, Phase
@@ -80,10 +80,7 @@ def plan(vehicle: Vehicle, options: Mapping[str, Any]) -> Manoeuvre:
             f"{', '.join(open_)} found by the trim: at zero, where they stand unless named, no commands keep this motion",
         )
     if not found.point.outcome.solved:
-        raise InputError(
-            f"no such steady motion: {found.point.words()[0]}", "a motion that the commands can keep", column=NAME,
-            advice="`coeflab trim` shows the bounds of every command.",
-        )  # fmt: skip
+        raise input_error("motion.no_such_steady_motion", column=NAME, point=found.point.words()[0])
     values = found.point.values
     orders = {name: value for name, value in values.items() if name not in MOTION}
     attitude = from_euler(values["roll"], values["pitch"], 0.0)

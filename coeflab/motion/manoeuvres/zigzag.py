@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from coeflab.core.errors import InputError
 from coeflab.core.options import bounded, measured, orders, parse_options
+from coeflab.core.texts import input_error
 from coeflab.motion import approach
 from coeflab.motion.manoeuvre import Figure, Manoeuvre, Phase, Until, crossing, extreme, value_at
 from coeflab.motion.trajectory import Trajectory
@@ -88,9 +88,7 @@ def _by_thrusters(
         vehicle, other, nu
     )
     if turning == 0.0:
-        raise InputError(
-            f"{' '.join(commands)}, which turns to neither side", "unequal commands", column=f"{NAME}.commands"
-        )
+        raise input_error("motion.turns_to_neither_side", column=f"{NAME}.commands", commands=" ".join(commands))
     sides = (approach.mirrored(vehicle, other), other) if turning > 0.0 else (other, approach.mirrored(vehicle, other))
     first = " ".join(f"{name}={value:g}" for name, value in sides[0].items())
     return sides, (f"thrusters instead of a rudder: first {first} (to starboard), then exchanged",)

@@ -10,6 +10,7 @@ import numpy as np
 
 from coeflab.core.errors import InputError
 from coeflab.core.options import bounded, one_of, parse_options
+from coeflab.core.texts import input_error
 from coeflab.motion.approach import in_current
 from coeflab.motion.manoeuvre import Manoeuvre
 from coeflab.motion.marching import march, march_by_tolerance
@@ -73,10 +74,7 @@ def simulate(vehicle: Vehicle, manoeuvre: Manoeuvre, options: Mapping[str, Any] 
     o = parse_options(Options, options or {}, "rigid_body")
     current = np.array([o.north, o.east, o.down])
     if o.integrator == "adaptive" and o.step > 0.0:
-        raise InputError(
-            f"a step of {o.step:g} s for the adaptive integrator", "the integrator rk4, or no step",
-            column="rigid_body.step", advice="The tolerance chooses the steps of adaptive.",
-        )  # fmt: skip
+        raise input_error("motion.step_for_adaptive_integrator", column="rigid_body.step", step=o.step)
 
     def moved(body: Vehicle, one: Manoeuvre) -> Trajectory:
         if o.integrator == "adaptive":

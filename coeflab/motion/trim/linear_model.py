@@ -8,7 +8,6 @@ from __future__ import annotations
 import json
 import math
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -18,7 +17,8 @@ from numpy.typing import NDArray
 from coeflab.core.errors import InputError, shown
 from coeflab.core.files import write_atomically
 from coeflab.core.missed import suggesting
-from coeflab.core.types import Array, brief, in_angles
+from coeflab.core.texts import input_error, text_of
+from coeflab.core.types import Array, dataclass, in_angles
 from coeflab.motion.dynamics import NEUTRAL, STEP, Slopes, modes, participation
 from coeflab.motion.trim.linear_files import ENDINGS, mat, npz
 from coeflab.motion.trim.trim import PLACES, Trim
@@ -173,7 +173,6 @@ class LinearModel:
 
 
 @suggesting
-@brief
 @dataclass(frozen=True, slots=True, eq=False)
 class LinearSchedule:
     """Linear models of one vehicle over several speeds, for a gain schedule.
@@ -346,9 +345,7 @@ def linear_model(found: Trim, also: Sequence[str] = (), lags: Mapping[str, float
         No steady motion was found, rates that are not finite, a state that nothing moves, or a lag of no command.
     """
     if not found.point.outcome.solved:
-        raise InputError(
-            "no steady motion to linearise about", "a motion that the commands can keep", column="--linear"
-        )
+        raise input_error("motion.no_steady_motion", column="--linear")
     steady, x = found.motion, found.point.found.point
     a, b = steady.state_slopes(x), steady.command_slopes(x)
     states = tuple(Variable(n, u, float(v) + 0.0) for (n, u), v in zip(steady.states, steady.departed(x), strict=True))
@@ -415,11 +412,7 @@ def _lagging(
 def _accuracy(a: Slopes, b: Slopes) -> tuple[str, ...]:
     """To a power of ten upwards: the digits of rounding differ from machine to machine."""
     below = [10.0 ** math.ceil(math.log10(max(float(np.max(s.error, initial=0.0)), LEAST_ERROR))) for s in (a, b)]
-    return (
-        f"Derivatives are central differences of the equations of motion with steps of {STEP:g} and {STEP / 2.0:g} of each "
-        "variable's scale, extrapolated. Their error, twice the change when the steps are halved, is below "
-        f"{below[0]:g} in A and {below[1]:g} in B",
-    )
+    return (text_of("motion.central_differences", step=STEP, half=STEP / 2.0, in_a=below[0], in_b=below[1]),)
 
 
 def _kinks(a: Slopes, b: Slopes, states: tuple[Variable, ...], commands: tuple[Variable, ...]) -> tuple[str, ...]:

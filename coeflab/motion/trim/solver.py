@@ -15,12 +15,11 @@ the effort 1/2 |w (y - target)|^2 falls.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-from coeflab.core.types import Array, brief
+from coeflab.core.types import Array, dataclass
 
 Mask = NDArray[np.bool_]
 
@@ -34,7 +33,6 @@ RESTORING, RETURNING, SELECTING = 150, 10, 60
 REST = 1e-8  # relative size of a gradient that counts as zero
 
 
-@brief
 @dataclass(frozen=True, slots=True, eq=False)
 class Scaled:
     """A problem in scaled unknowns.
@@ -262,7 +260,6 @@ REACH = 10.0
 NOTHING = 1e-12
 
 
-@brief
 @dataclass(frozen=True, slots=True, eq=False)
 class Problem:
     """Equations F(x) = 0 in unknowns with bounds.
@@ -310,7 +307,6 @@ class Problem:
         return Scaled(equations, slopes, low, high, self.target / self.scale, self.weight)
 
 
-@brief
 @dataclass(frozen=True, slots=True, eq=False)
 class Found:
     """A solution, or the least violation where there is none.

@@ -6,7 +6,7 @@ Steady motion of a vehicle: constant velocities, roll, pitch and rate of heading
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -19,8 +19,8 @@ from coeflab.core.keywords import all_spoken
 from coeflab.core.machine import one_thread
 from coeflab.core.missed import suggesting
 from coeflab.core.table import Table, number
-from coeflab.core.texts import remark
-from coeflab.core.types import Array, brief, in_angles
+from coeflab.core.texts import input_error, remark
+from coeflab.core.types import Array, dataclass, in_angles
 from coeflab.law.force_law import WIND
 from coeflab.law.symbols import COMPONENTS, CONTROLS, LINEAR, MOTIONS
 from coeflab.law.transforms import incidence
@@ -49,7 +49,6 @@ NAMES = {
 }  # fmt: skip
 
 
-@brief
 @dataclass(frozen=True, slots=True, eq=False)
 class SteadyMotion:
     """A vehicle with what is given of its motion and commands.
@@ -186,9 +185,7 @@ class SteadyMotion:
 
 def _finite(found: Slopes) -> Slopes:
     if not np.isfinite(found.matrix).all():
-        raise InputError(
-            "rates of small motions that are not finite", "a motion and coefficients whose forces are", column="motion"
-        )
+        raise input_error("motion.slopes_not_finite", column="motion")
     return found
 
 

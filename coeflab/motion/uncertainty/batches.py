@@ -13,7 +13,6 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import Future, ProcessPoolExecutor, as_completed
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager
-from dataclasses import dataclass
 from functools import lru_cache
 from multiprocessing import get_context
 from pathlib import Path
@@ -28,7 +27,8 @@ from coeflab.core.limits import JSON_BYTES
 from coeflab.core.machine import dask_client, end_with_parent, one_thread
 from coeflab.core.text.bounded import whole_bytes
 from coeflab.core.text.json import parse_json
-from coeflab.core.types import Array, brief
+from coeflab.core.texts import text_of
+from coeflab.core.types import Array, dataclass
 from coeflab.core.version import VERSION
 from coeflab.law.symbols import CONTROLS
 from coeflab.motion.manoeuvre import Figure, Manoeuvre
@@ -44,7 +44,6 @@ NO_PLAN = "no start"
 ONE_AT_A_TIME = Lock()
 
 
-@brief
 @dataclass(frozen=True, slots=True)
 class Setup:
     """What every process needs to know, picklable and hashable.
@@ -81,7 +80,6 @@ class Setup:
     kernel: str = "numpy"
 
 
-@brief
 @dataclass(frozen=True, slots=True, eq=False)
 class Batch:
     """Figures of some members.
@@ -186,7 +184,6 @@ def run_batch(setup: Setup, names: Sequence[str], deviations: Array) -> Batch:
     return Batch(np.array(rows, dtype=np.float64), tuple(statuses), tuple(ended))
 
 
-@brief
 @dataclass(frozen=True, slots=True)
 class Store:
     """Finished batches in a folder of their own run, one file each, with a checksum.
@@ -295,10 +292,7 @@ def _on_processes(
             for done in as_completed(waiting):
                 yield waiting[done], done.result()
         except BrokenProcessPool:
-            raise CoeflabError(
-                "A worker process was killed, perhaps out of memory. Finished batches are kept where there is a store: "
-                "start again, with fewer --cores."
-            ) from None
+            raise CoeflabError(text_of("motion.worker_killed")) from None
         finally:
             pool.shutdown(wait=False, cancel_futures=True)
 

@@ -8,13 +8,13 @@ G_h and G_v of draws.
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Iterator, Sequence
-from dataclasses import dataclass
 
 import numpy as np
 from scipy.linalg import block_diag
 
-from coeflab.core.errors import InputError, shown
-from coeflab.core.types import Array, brief, locking
+from coeflab.core.errors import shown
+from coeflab.core.texts import input_error
+from coeflab.core.types import Array, dataclass, locking
 from coeflab.fits.uncertainty.propagation import reaches_zero
 from coeflab.law.force_law import WIND, ForceTerm
 from coeflab.law.rigid_body import ideal_quadratics
@@ -33,7 +33,6 @@ NEGATIVE = -1e-8  # eigenvalue of a correlation matrix: rounding of what files p
 UNSTATED = "not varied: no uncertainty is stated"
 
 
-@brief
 @dataclass(frozen=True, slots=True, eq=False)
 @locking("values covariance")
 class Uncertain:
@@ -131,10 +130,7 @@ def uncertain(parameters: ParameterFile, used: Iterable[str]) -> Uncertain:
     parts = [p for p in (_of_coefficients(parameters), *_of_tables(parameters, set(used))) if p.symbols]
     drawn = [_stated(p) for p in parts]
     if not any(len(chosen) for chosen, _ in drawn):
-        raise InputError(
-            f"{shown(parameters.name)}, a parameter file without any stated uncertainty",
-            "U95 or a covariance of some coefficient",
-        )
+        raise input_error("motion.no_uncertainty", name=shown(parameters.name))
     held = [
         p.symbols[i]
         for p, (chosen, _) in zip(parts, drawn, strict=True)
@@ -149,7 +145,6 @@ def uncertain(parameters: ParameterFile, used: Iterable[str]) -> Uncertain:
     )  # fmt: skip
 
 
-@brief
 @dataclass(frozen=True, slots=True)
 class _Part:
     """Coefficients with one covariance: those of the file, or the terms of a table; ``rows`` are places in the matrix."""
@@ -208,10 +203,7 @@ def _semidefinite(cells: Array, labels: Sequence[str], column: str) -> None:
     low, vectors = np.linalg.eigh(cells / np.outer(scale, scale))
     if low[0] < NEGATIVE:
         worst = [labels[i] for i in np.argsort(-np.abs(vectors[:, 0]), kind="stable")[:3]]
-        raise InputError(
-            f"correlations with an eigenvalue of {low[0]:.3g}, mostly of {', '.join(worst)}", "a positive semidefinite covariance",
-            column=column, advice="No random numbers have such a covariance; an entry was changed or rounded too far.",
-        )  # fmt: skip
+        raise input_error("motion.correlations_not_definite", column=column, low=low[0], worst=", ".join(worst))
 
 
 def _said(parameters: ParameterFile, held: Sequence[str]) -> tuple[str, ...]:

@@ -15,12 +15,11 @@ The rows that Sobol indices of a parameter file take, and which of them have to 
 from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Sequence
-from dataclasses import dataclass
 
 import numpy as np
 from scipy.special import ndtri
 
-from coeflab.core.types import Array, brief
+from coeflab.core.types import Array, dataclass
 from coeflab.fits.uncertainty.propagation import HIGH, LOW
 from coeflab.motion.uncertainty.draws import CORRELATED, Uncertain
 
@@ -32,7 +31,6 @@ BLOCK = 128
 TOGETHER = 8_000_000  # rows times replicates that are held at once, 64 MB an array
 
 
-@brief
 @dataclass(frozen=True, slots=True, eq=False)
 class SobolIndices:
     """Indices of g groups with the percentiles 2.275 and 97.725 of a bootstrap over the rows of the design.
@@ -164,7 +162,6 @@ def share_noise(rows: int) -> float:
     return float(3.0 * np.sqrt(2.0 * DEGREE) / rows)
 
 
-@brief
 @dataclass(frozen=True, slots=True, eq=False)
 class SobolDesign:
     """Samples A and B, and A with each group of B.

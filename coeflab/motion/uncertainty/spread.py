@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.special import betainc
 
-from coeflab.core.types import Array, brief
+from coeflab.core.types import Array, dataclass
 from coeflab.fits.uncertainty.propagation import HIGH, LOW
 from coeflab.motion.manoeuvre import Figure
 from coeflab.motion.uncertainty.sobol import SobolIndices
@@ -43,7 +42,6 @@ FEWEST = 20
 EXTRAPOLATED = "extrapolated"
 
 
-@brief
 @dataclass(frozen=True, slots=True)
 class Spread:
     """One figure over all members.
@@ -78,7 +76,6 @@ class Spread:
     why: str = ""
 
 
-@brief
 @dataclass(frozen=True, slots=True)
 class Share:
     """What one group of inputs does to one figure.
@@ -103,7 +100,6 @@ class Share:
     total_bounds: tuple[float, float]
 
 
-@brief
 @dataclass(frozen=True, slots=True)
 class Importance:
     """Where the variance of one figure comes from.

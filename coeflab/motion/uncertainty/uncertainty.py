@@ -6,7 +6,7 @@ import hashlib
 import json
 import logging
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass, replace
+from dataclasses import asdict, replace
 from pathlib import Path
 
 import numpy as np
@@ -14,7 +14,8 @@ import numpy as np
 from coeflab.core.errors import InputError, shown
 from coeflab.core.limits import MEMBERS
 from coeflab.core.machine import compiles, cores, one_thread, stage
-from coeflab.core.types import Array, brief, locking
+from coeflab.core.texts import text_of
+from coeflab.core.types import Array, dataclass, locking
 from coeflab.core.version import VERSION
 from coeflab.law.symbols import MOTIONS
 from coeflab.motion.approach import in_current, undetermined_at_once
@@ -35,7 +36,6 @@ from coeflab.vehicle.stability import INDICES
 FEWEST_MEMBERS = 40
 
 
-@brief
 @dataclass(frozen=True, slots=True)
 class Question:
     """What is asked for.
@@ -83,7 +83,6 @@ class Question:
             raise InputError(shown(self.kernel), f"one of {', '.join(KERNELS)}", column="--kernel")
 
 
-@brief
 @dataclass(frozen=True, slots=True, eq=False)
 @locking("deviations values")
 class Carried:
@@ -321,10 +320,7 @@ def _missed(setup: Setup, nominal: tuple[Figure, ...], ended: str, exact: tuple[
         missed.append(f"the end ({ended} for {how})")
     if not missed:
         return []
-    return [
-        f"fixed steps of {setup.step:.3g} s are too long for this motion: at the values of the file they miss {', '.join(missed)} "
-        "of the adaptive integrator. No interval includes that error"
-    ]
+    return [text_of("motion.step_too_long", step=setup.step, missed=", ".join(missed))]
 
 
 def _digits(value: float | None) -> str:

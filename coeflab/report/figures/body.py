@@ -8,12 +8,10 @@ Axes with ticks in metres under and left of a view along a body axis.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.figure import Figure as Drawing
 from matplotlib.legend_handler import HandlerBase
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch, PathPatch, Polygon
@@ -23,12 +21,13 @@ from coeflab.bodies.mesh import solids as silhouette
 from coeflab.bodies.mesh.mesh import TriangleMesh
 from coeflab.bodies.mesh.solids import Surface
 from coeflab.bodies.shape import OTHER, Part, Parts
-from coeflab.core.types import Array, brief
+from coeflab.core.types import Array, dataclass
 from coeflab.report.document import Figure
 from coeflab.report.figures import body_scene
 from coeflab.report.figures.palette import COLOURS
-from coeflab.report.figures.svg import POINTS, settings, svg_text
+from coeflab.report.figures.svg import paper, settings, svg_text
 from coeflab.report.notation import as_users_wrote
+from coeflab.report.texts import text_of
 
 LIGHT = np.array([-0.35, 0.65, 0.67]) / np.linalg.norm([-0.35, 0.65, 0.67])
 SHADES, SHADE = (0.15, 0.3, 0.45, 0.6, 0.75, 0.9), 0.1
@@ -37,7 +36,6 @@ EDGE_ON = 1e-6
 PALE, HATCH, STRIPE = 0.5, 8.0, 2.0  # the last two in points
 
 
-@brief
 @dataclass(frozen=True, slots=True, eq=False)
 class View:
     """A direction to look in.
@@ -53,7 +51,6 @@ class View:
     axes: Array
 
 
-@brief
 @dataclass(frozen=True, slots=True, eq=False)
 class Sheet:
     """A view at its place on the paper.
@@ -296,11 +293,7 @@ def body_figure(name: str, shape: Parts, mesh: TriangleMesh | None, anchor: str)
     right = first + scale * size[0] + GAP + LEFT
     title = f"{name}: simple parts" + (" over the mesh" if mesh is not None else "")
     with settings():
-        figure = Drawing(figsize=(WIDTH / POINTS, height / POINTS))
-        axes = figure.add_axes((0.0, 0.0, 1.0, 1.0))
-        axes.set_axis_off()
-        axes.set_xlim(0.0, WIDTH)
-        axes.set_ylim(0.0, height)
+        figure, axes = paper(WIDTH, height)
         middle = (WIDTH - larger * tilted[0]) / 2.0
         for view, left, top, by in (
             (OBLIQUE, middle, tops[0], larger),
@@ -433,11 +426,7 @@ def _caption(shape: Parts, mesh: TriangleMesh | None) -> str:
             "The parts of the body, coloured by form, in orthographic views at one scale; the oblique one is larger."
             + marked
         )
-    return (
-        "Simple parts (solid, coloured by form) under the translucent mesh with its outline: grey without colour is mesh "
-        "outside the parts, full colour beyond the outline is part outside the mesh. A plate seen from its edge is a line."
-        + marked
-    )
+    return text_of("body_figure.mesh") + marked
 
 
 def _description(shape: Parts, mesh: TriangleMesh | None) -> str:

@@ -14,7 +14,6 @@ from matplotlib.patches import Patch
 from coeflab.core.table import coefficient, plus_minus
 from coeflab.core.types import Array
 from coeflab.fits.results.fit_result import Sweep
-from coeflab.fits.statistics.slopes import Estimate
 from coeflab.law.symbols import primed
 from coeflab.report.document import Figure, Series
 from coeflab.report.figures import series
@@ -22,6 +21,7 @@ from coeflab.report.figures.palette import COLOURS, power_of_ten, recoloured
 from coeflab.report.figures.panel import BOTTOM, TOP, drawing, legend, panel
 from coeflab.report.figures.svg import settings, strokes, svg_text
 from coeflab.report.notation import as_users_wrote
+from coeflab.report.texts import text_of
 from coeflab.vehicle.reference import Comparison
 
 SIDESTEP = 0.011
@@ -54,7 +54,7 @@ def estimator_figure(sweep: Sweep, published: tuple[Comparison, ...], anchor: st
         Re-analyses of this coefficient, drawn as lines.
     anchor : str
     """
-    frame = _frame(sweep, published)
+    frame = frame_of(sweep, published)
     factor, power = power_of_ten(max(abs(f) for f in frame))
     name = primed(sweep.symbol)
     drawn = _drawn(sweep)
@@ -108,16 +108,11 @@ def draw_forms(
     return at
 
 
-def frame_of(sweep: Sweep, published: tuple[Comparison, ...] = ()) -> tuple[float, float]:
-    """Range of values that `draw_forms` shows."""
-    return _frame(sweep, published)
-
-
 def _drawn(sweep: Sweep) -> list[_Drawn]:
     out = []
     for family, style in series.styles(sweep).items():
         mine = [e for e in sweep.forms if e.family.name == family]
-        halves = [_half(e) for e in mine]
+        halves = [e.half_hc2 if np.isfinite(e.half_hc2) else 0.0 for e in mine]
         notes = tuple(f"± {coefficient(h)}, {len(e.rows)} points" for e, h in zip(mine, halves, strict=True))
         window, value = (np.array([getattr(e, which) for e in mine]) for which in ("window", "value"))
         key, name = series.family_key(sweep, mine[0]), series.family_name(sweep, mine[0])
@@ -138,7 +133,7 @@ def _inside(sweep: Sweep, d: _Drawn, x: Array, frame: tuple[float, float]) -> Se
     return series.points(d.key, d.name, x[selected], d.value[selected], notes, groups)
 
 
-def _frame(sweep: Sweep, published: tuple[Comparison, ...]) -> tuple[float, float]:
+def frame_of(sweep: Sweep, published: tuple[Comparison, ...] = ()) -> tuple[float, float]:
     """Range of values shown: the recommendation and the published values in full, the rest as it fits."""
     known = [e.value for e in sweep.forms]
     middle = sweep.value if sweep.value is not None else float(np.median(known)) if known else 0.0
@@ -148,10 +143,6 @@ def _frame(sweep: Sweep, published: tuple[Comparison, ...]) -> tuple[float, floa
     wanted = max(inner, min(float(np.quantile(close, 0.9)), 2.5 * inner) if close and inner else 0.0)
     half = 1.12 * wanted or max(close, default=0.0) or abs(middle) or 1.0
     return middle - half, middle + half
-
-
-def _half(e: Estimate) -> float:
-    return e.half_hc2 if np.isfinite(e.half_hc2) else 0.0
 
 
 def _recommended(
@@ -223,7 +214,11 @@ def _description(sweep: Sweep, published: tuple[Comparison, ...]) -> str:
     spread = [e.value for e in sweep.forms]
     forms = f"; single forms from {coefficient(min(spread))} to {coefficient(max(spread))}" if spread else ""
     there = "".join(f"; published {coefficient(c.published)}" for c in published)
-    return (
-        f"{len(spread)} estimates of {primed(sweep.symbol)} by single forms against the largest motion used. "
-        f"Recommended: {value}{forms}{there}."
+    return text_of(
+        "estimator_figure.description",
+        spread=len(spread),
+        symbol=primed(sweep.symbol),
+        value=value,
+        forms=forms,
+        there=there,
     )

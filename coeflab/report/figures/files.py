@@ -8,11 +8,12 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any, Literal
 
-from coeflab.core.errors import InputError, OutputError
+from coeflab.core.errors import OutputError
 from coeflab.core.files import typed
 from coeflab.core.limits import TOML_BYTES
 from coeflab.core.text.csv_rows import csv_text
 from coeflab.core.text.toml import read_text
+from coeflab.core.texts import input_error
 from coeflab.report.document import Figure
 from coeflab.report.figures import svg
 from coeflab.report.printable import CLOCK
@@ -54,8 +55,8 @@ def styled(file: str | Path | None) -> Iterator[None]:
             cycle = [one.get("color") for one in mpl.rcParams["axes.prop_cycle"] if one.get("color")]
             ink = mpl.rcParams["text.color"]
     except (OSError, ValueError, KeyError) as why:
-        raise InputError(
-            str(why).splitlines()[0], "a style sheet of Matplotlib, or the name of a style", column="--style"
+        raise input_error(
+            "report.style_sheet_matplotlib_or", column="--style", found=str(why).splitlines()[0]
         ) from None
     from matplotlib.colors import to_hex
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import Any, Literal
 
 import numpy as np
@@ -19,7 +20,6 @@ from coeflab.core.wording import listed
 from coeflab.fits.results.fit_result import Sweep
 from coeflab.law.symbols import primed
 from coeflab.report.acceptance import Acceptance, share
-from coeflab.report.acceptance import Drawing as Drawn
 from coeflab.report.document import AnswerRow, Figure, Series
 from coeflab.report.figures.palette import COLOURS, power_of_ten
 from coeflab.report.figures.panel import SIZE, Range, framed_legend, limits, tick_texts, ticks
@@ -27,6 +27,7 @@ from coeflab.report.figures.series import curve, numbers, points, tagged
 from coeflab.report.figures.svg import POINTS, bare, label, settings, strokes, svg_text, text_width
 from coeflab.report.figures.sweep import fine_curve
 from coeflab.report.notation import as_users_wrote
+from coeflab.report.texts import text_of
 
 WIDTH, HEIGHT = 244.0, 208.0  # points; a column of a journal, 86 mm
 LONGEST = 60
@@ -338,10 +339,7 @@ SKETCH, LEVEL = 92.0, 56.0
 def axes_figure() -> Figure:
     """Axes and signs in three views; a turn goes the shorter way from one axis to the next: y to z, z to x, x to y."""
     title = "Axes and signs"
-    description = (
-        "From above: x, u and X forward, y, v and Y to starboard, r and N turn the bow to starboard. From starboard: z, w and Z down, "
-        "q and M turn the bow up. From astern: p and K turn starboard down."
-    )
+    description = text_of("axes_figure.description")
     with settings():
         figure = Drawing(figsize=(WIDTH / POINTS, SKETCH / POINTS))
         axes = bare(figure, (0.0, 0.0, 1.0, 1.0))
@@ -425,7 +423,7 @@ def shares_figure(found: Acceptance) -> Figure:
     words = "; ".join(f"{t.title}: {s:.2f}" for t, s in zip(found.tables, found_largest, strict=True))
     across = (0.0, max(1.05, 1.05 * float(largest.max(initial=0.0))))
     with settings():
-        counts = [f"{sum(r.holds for r in t.rows)} of {len(t.rows)}" for t in found.tables]
+        counts = [t.within for t in found.tables]
         right = 12.0 + max(text_width(count, SIZE) for count in counts)
         names = [_cut(t.title, 0.93 * (WIDTH - INSET - right)) for t in found.tables]
         figure, axes = _drawing(
@@ -460,7 +458,7 @@ def _cut(text: str, room: float) -> str:
     return text if selected == len(words) else " ".join(words[:selected]).rstrip(",") + " …"
 
 
-def renamed(drawn: Drawn, anchor: str) -> Figure:
+def renamed(drawn: Figure, anchor: str) -> Figure:
     """The same drawing under another anchor, so that a page can hold it twice."""
     svg = re.sub(rf'(?<=["# (]){re.escape(drawn.anchor)}-(?=\d|title|desc)', f"{anchor}-", drawn.svg)
-    return Figure(anchor, svg, drawn.title, drawn.caption, drawn.description, drawn.panels)
+    return replace(drawn, anchor=anchor, svg=svg, scene=None)

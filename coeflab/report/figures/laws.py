@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 
-from coeflab.core.types import Array, brief, locking
+from coeflab.core.types import Array, dataclass, locking
 from coeflab.report.document import Figure, Panel
 from coeflab.report.figures.palette import COLOURS, recoloured
 from coeflab.report.figures.panel import BOTTOM, GAP, LEFT, LEGEND_ROW, RIGHT, WIDTH, drawing, legend, limits, panel
@@ -22,7 +21,6 @@ DOWNWARDS = ("depth", "down")
 PLAIN = Style(COLOURS["ink"], "-", "o")
 
 
-@brief
 @dataclass(frozen=True, slots=True, eq=False)
 @locking("x y")
 class Trace:
@@ -63,7 +61,6 @@ class Trace:
         }  # fmt: skip
 
 
-@brief
 @dataclass(frozen=True, slots=True, eq=False)
 class Plot:
     """One panel.

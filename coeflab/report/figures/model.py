@@ -27,7 +27,7 @@ from coeflab.report.document import Figure, Panel, Series
 from coeflab.report.figures.palette import COLOURS
 from coeflab.report.figures.panel import BOTTOM, drawing, legend, limits, panel
 from coeflab.report.figures.series import STYLES, curve, numbers, points, tagged
-from coeflab.report.figures.surface import curve_figure, is_surface, surface_figure
+from coeflab.report.figures.surface import curve_figure, is_surface, residual_panel, surface_figure
 from coeflab.report.figures.svg import settings, svg_text
 from coeflab.report.figures.variables import (
     axis_name,
@@ -45,6 +45,7 @@ from coeflab.report.figures.variables import (
     used,
 )
 from coeflab.report.notation import as_users_wrote
+from coeflab.report.texts import text_of
 
 FIELD, ROOM, LEGEND = 118.0, 12.0, 34.0
 FINE = 121
@@ -98,6 +99,15 @@ def _alone(model: FittedModel, columns: Mapping[str, Array], *variables: str) ->
     return rows
 
 
+def _law(model: FittedModel, variable: str, factor: float) -> tuple[NDArray[np.bool_], Array, Array, Array]:
+    """Rows with the others at rest, steps over their range, the law there and its half-width."""
+    mine = _alone(model, model.x, variable)
+    fine = np.linspace(float(model.x[variable][mine].min()), float(model.x[variable][mine].max()), FINE)
+    columns = {v: np.zeros_like(fine) for v in {*model.domain.variables, *moving(model)}}
+    values, half, _ = model.evaluate(columns | {variable: fine})
+    return mine, fine, values * factor, np.nan_to_num(half) * factor
+
+
 def draw_along(
     axes: Axes, model: FittedModel, variable: str, factor: float = 1.0, palette: Mapping[str, str] = COLOURS
 ) -> list[Any]:
@@ -114,11 +124,8 @@ def draw_along(
     palette : mapping of str to str
         A colour for each name of `COLOURS`.
     """
-    mine, aside = _alone(model, model.x, variable), model.set_aside
-    fine = np.linspace(float(model.x[variable][mine].min()), float(model.x[variable][mine].max()), FINE)
-    columns = {v: np.zeros_like(fine) for v in {*model.domain.variables, *moving(model)}}
-    values, half, _ = model.evaluate(columns | {variable: fine})
-    values, half = values * factor, np.nan_to_num(half) * factor
+    aside = model.set_aside
+    mine, fine, values, half = _law(model, variable, factor)
     shown = shown_values(variable, fine)
     band = axes.fill_between(
         shown, values - half, values + half, color=palette["band"], alpha=0.4, linewidth=0, zorder=1
@@ -137,12 +144,9 @@ def _panel(
     figure: Drawing, model: FittedModel, variable: str, bottom: float, factor: float, name: tuple[str, str]
 ) -> Panel:
     """Draws one panel; its numbers."""
-    mine, aside = _alone(model, model.x, variable), model.set_aside
+    aside = model.set_aside
+    mine, fine, values, half = _law(model, variable, factor)
     x, y = shown_values(variable, model.x[variable][mine]), model.y[mine] * factor
-    fine = np.linspace(float(model.x[variable][mine].min()), float(model.x[variable][mine].max()), FINE)
-    columns = {v: np.zeros_like(fine) for v in {*model.domain.variables, *moving(model)}}
-    values, half, _ = model.evaluate(columns | {variable: fine})
-    values, half = values * factor, np.nan_to_num(half) * factor
     beside, at, out = np.zeros(0), np.zeros(0), np.zeros(0, dtype=bool)
     unit = f"[{response_unit(model)}]"
     if aside is not None:
@@ -210,7 +214,8 @@ def residual_figure(model: FittedModel, anchor: str) -> Figure:
         panels = [replace(top, across=top.up)]
         for i, variable in enumerate(names):
             bottom = (len(names) - 1 - i) * (RESIDUALS + BOTTOM + RESIDUAL_ROOM) + BOTTOM
-            lower, below = _residuals(figure, model, variable, bottom)
+            across = limits(shown_values(variable, model.x[variable]), 0.04) or (-1.0, 1.0)
+            lower, below = residual_panel(figure, model, variable, across, bottom, RESIDUALS)
             left = points("points", "points", shown_values(variable, model.x[variable]), model.fit.residuals, labels)
             panels.append(numbers(lower, (left,), axis_name(variable, model), f"residual  {unit}", below))
         svg = svg_text(figure, anchor, title, description)
@@ -228,21 +233,6 @@ def _measured(figure: Drawing, model: FittedModel, fitted: Array, bottom: float)
         name_across=f"{name} fitted{power}  [{unit}]",
     )  # fmt: skip
     axes.plot(both, both, color=COLOURS["a"], linewidth=1.1, zorder=2)
-    return axes, factor
-
-
-def _residuals(figure: Drawing, model: FittedModel, variable: str, bottom: float) -> tuple[Axes, float]:
-    residuals = model.fit.residuals
-    largest = float(np.max(np.abs(residuals), initial=0.0))
-    factor, power = scale_of(residuals)
-    reach = largest * factor * 1.2 or 1.0
-    x = shown_values(variable, model.x[variable])
-    axes = panel(
-        figure, bottom, RESIDUALS, across=limits(x, 0.04) or (-1.0, 1.0), up=(-reach, reach),
-        name_up=f"residual{power}", name_across=axis_name(variable, model), most_up=3,
-    )  # fmt: skip
-    axes.axhline(0.0, color=COLOURS["muted"], linewidth=0.6)
-    used(axes, x, residuals * factor)
     return axes, factor
 
 
@@ -372,18 +362,18 @@ def _spoken(model: FittedModel, variable: str, level: float) -> str:
 
 def _slices_caption(model: FittedModel) -> str:
     first, second = (symbol_of(v, model) for v in moving(model)[:2])
-    return (
-        f"Slices of the same surface: {response_name(model)} against {first} at values of {second}, curves with the points "
-        "of each slice."
-    )
+    return text_of("model_figure.slices", model=response_name(model), first=first, second=second)
 
 
 def _slices_description(model: FittedModel, levels: tuple[float, ...]) -> str:
     first, second = moving(model)[:2]
     each = ", ".join(_spoken(model, second, x) for x in levels)
-    return (
-        f"{response_name(model)} over {axis_name(first, model).replace('  ', ' ')}: curves and points at "
-        f"{symbol_of(second, model)} = {each}."
+    return text_of(
+        "model_figure.slices_seen",
+        model=response_name(model),
+        first=axis_name(first, model).replace("  ", " "),
+        second=symbol_of(second, model),
+        each=each,
     )
 
 

@@ -202,6 +202,43 @@ def _frame(figure: Figure, axes: Axes, box: tuple[float, float, float, float], x
     strokes(axes, (first_x, last_x), (first_y, last_y), transform=points, **look)
 
 
+def row_panel(
+    figure: Figure, sides: Sequence[float], across: Range, rows: Sequence[tuple[str, str]], count: int, name: str
+) -> Axes:
+    """A panel of lying bars, which the caller draws: names of its rows at the left and numbers at the right, the first row on top.
+
+    Parameters
+    ----------
+    figure : Figure
+    sides : (left, right, bottom, top)
+        Room around the frame, points.
+    across : (float, float)
+    rows : sequence of (str, str)
+        Name and number of each, the first ``count - 1`` high.
+    count : int
+        Rows that have room.
+    name : str
+        Of the axis.
+    """
+    left, right, bottom, top = sides
+    height = height_of(figure)
+    width, tall = WIDTH - left - right, height - bottom - top
+    axes = figure.add_axes((left / WIDTH, bottom / height, width / WIDTH, tall / height))
+    axes.set_axis_off()
+    axes.set(xlim=across, ylim=(-0.5, count - 0.5))
+    at = ticks(across, 6)
+    axes.vlines(at, -0.5, count - 0.5, color=COLOURS["rule"], linewidth=0.5, zorder=0)
+    axes.axvline(0.0, color=COLOURS["muted"], linewidth=0.6, zorder=3)
+    for k, (named, value) in enumerate(rows):
+        base = (bottom + (count - 0.5 - k) * tall / count - 2.9) / height
+        figure.text((left - 5.5) / WIDTH, base, named, ha="right", va="baseline")
+        figure.text((WIDTH - right + 5.5) / WIDTH, base, value, ha="left", va="baseline")
+    for x, text in zip(left + width * _shares(at, across), tick_texts(at), strict=True):
+        figure.text(x / WIDTH, (bottom - 13.5) / height, text, ha="center", va="baseline")
+    figure.text((left + width / 2.0) / WIDTH, (bottom - 27.5) / height, name, ha="center", va="baseline")
+    return axes
+
+
 def legend(figure: Figure, handles: list[Any], above: float = TOP) -> None:
     """One legend in two columns above the panels, whose upper edge is ``above`` points from the lower edge."""
     framed_legend(figure, handles, LEFT - 16.0, above + 8.0)

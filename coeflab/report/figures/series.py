@@ -6,7 +6,6 @@ The numbers behind a drawing, and marks in it that tell which artists they belon
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -14,7 +13,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure as Drawing
 from numpy.typing import NDArray
 
-from coeflab.core.types import Array, brief
+from coeflab.core.types import Array, dataclass
 from coeflab.fits.results.fit_result import Sweep
 from coeflab.fits.statistics.slopes import Estimate
 from coeflab.report.document import Panel, Series
@@ -33,7 +32,6 @@ _AXIS_NAMES = {
 }
 
 
-@brief
 @dataclass(frozen=True, slots=True)
 class Style:
     """Colour, line and marker of one family; line and marker alone tell it from the others."""

@@ -24,10 +24,10 @@ from coeflab.report.figures.panel import BOTTOM, GAP, TOP, Range, drawing, legen
 from coeflab.report.figures.series import curve, numbers, points, tagged
 from coeflab.report.figures.svg import settings, svg_text
 from coeflab.report.figures.variables import (
-    BEYOND,
     axis_name,
     band_in_words,
     beside,
+    beyond,
     hollow,
     moving,
     response_name,
@@ -39,6 +39,7 @@ from coeflab.report.figures.variables import (
     unit_of,
     used,
 )
+from coeflab.report.texts import text_of
 
 SCENE_GRID, EVERY = 33, 4
 
@@ -77,10 +78,7 @@ def surface_scene(model: FittedModel) -> Scene | None:
         for i, v in enumerate(names)
     ]
     axes = (flat[0], flat[1], _axis(name, response_unit(model), everything[:, 2]))
-    caption = (
-        f"{name} in space: {model.form}, inside the hull of the data, with the {model.n_points} points and their distances "
-        "from the surface. Drag to turn it."
-    )
+    caption = text_of("surface_figure.scene", name=name, form=model.form, n_points=model.n_points)
     return Scene(title, caption, f"The surface of {model.n_points} points over {' and '.join(names)}.", layers, axes)
 
 
@@ -244,9 +242,12 @@ def _field(axes: Axes, model: FittedModel, factor: float) -> list[str]:
 
 def _caption(model: FittedModel) -> str:
     names = " and ".join(symbol_of(v, model) for v in _axes(model))
-    return (
-        f"{response_name(model)} over {names}: {model.form}. The ground grows darker as the response grows; lines of negative "
-        f"values are dashed. Outside the hull of the data {BEYOND[model.domain.rule]}."
+    return text_of(
+        "surface_figure.caption",
+        model=response_name(model),
+        names=names,
+        form=model.form,
+        beyond=beyond(model),
     )
 
 
@@ -299,7 +300,8 @@ def curve_figure(model: FittedModel, anchor: str) -> Figure:
         handles += tagged(beside(main, model, variable, factor), "aside")
         handles += _curve(main, at, y * factor, half * factor, inside)
         legend(figure, handles)
-        lower, below = _residuals(figure, model, variable, across)
+        lower, below = residual_panel(figure, model, variable, across, BOTTOM, RESIDUALS)
+        tagged(lower.lines[-1], "points")
         _band(lower, model, at, half)
         for axes in (main, lower):
             _shade(axes, across, shown_values(variable, np.array([x.min(), x.max()])))
@@ -351,23 +353,25 @@ def _band(axes: Axes, model: FittedModel, at: Array, half: Array) -> None:
     axes.fill_between(at, -up, up, color=COLOURS["band"], alpha=0.4, linewidth=0, zorder=1)
 
 
-def _residuals(figure: Any, model: FittedModel, variable: str, across: Range) -> tuple[Axes, float]:
+def residual_panel(
+    figure: Any, model: FittedModel, variable: str, across: Range, bottom: float, height: float
+) -> tuple[Axes, float]:
+    """A panel of what the fit leaves over along a variable, and the factor of its upright axis."""
     residuals = model.fit.residuals
-    largest = float(np.max(np.abs(residuals), initial=0.0))
     factor, power = scale_of(residuals)
-    reach = largest * factor * 1.2 or 1.0
+    reach = float(np.max(np.abs(residuals), initial=0.0)) * factor * 1.2 or 1.0
     axes = panel(
-        figure, BOTTOM, RESIDUALS, across=across, up=(-reach, reach), name_up=f"residual{power}",
+        figure, bottom, height, across=across, up=(-reach, reach), name_up=f"residual{power}",
         name_across=axis_name(variable, model), most_up=3,
     )  # fmt: skip
     axes.axhline(0.0, color=COLOURS["muted"], linewidth=0.6)
-    tagged(used(axes, shown_values(variable, model.x[variable]), residuals * factor), "points")
+    used(axes, shown_values(variable, model.x[variable]), residuals * factor)
     return axes, factor
 
 
 def _caption_curve(model: FittedModel, variable: str) -> str:
     text = f"{response_name(model)} against {axis_name(variable, model).partition('  ')[0]}: {model.form}. "
-    return f"{text}{band_in_words(model)} Dashed on grey: beyond the data, where {BEYOND[model.domain.rule]}. {scatter_in_words(model)}"
+    return f"{text}{band_in_words(model)} Dashed on grey: beyond the data, where {beyond(model)}. {scatter_in_words(model)}"
 
 
 def _description_curve(model: FittedModel, variable: str) -> str:

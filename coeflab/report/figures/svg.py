@@ -247,6 +247,15 @@ def strokes(axes: Axes, x: Sequence[ArrayLike], y: Sequence[ArrayLike], **look: 
     return line
 
 
+def paper(width: float, height: float) -> tuple[Figure, Axes]:
+    """An empty figure with axes over all of it that count in points."""
+    figure = Figure(figsize=(width / POINTS, height / POINTS))
+    axes = figure.add_axes((0.0, 0.0, 1.0, 1.0))
+    axes.set_axis_off()
+    axes.set(xlim=(0.0, width), ylim=(0.0, height))
+    return figure, axes
+
+
 COLUMNS, GAP, TITLE = 2, 24.0, 18.0
 LONGEST = 62
 

@@ -20,6 +20,7 @@ from coeflab.report.figures.panel import BOTTOM, GAP, TOP, Range, drawing, legen
 from coeflab.report.figures.series import axis_name, curve, numbers, on_axis, points, tagged
 from coeflab.report.figures.svg import settings, strokes, svg_text
 from coeflab.report.notation import as_users_wrote
+from coeflab.report.texts import text_of
 
 RESIDUALS = 70.0
 FINE = 121
@@ -190,7 +191,6 @@ def _caption(sweep: Sweep) -> str:
 
 def _description(sweep: Sweep) -> str:
     n, m = len(sweep.x), len(sweep.left_out)
-    return (
-        f"Upper panel: {n} points of {sweep.component}' over {axis_name(sweep).replace('  ', ' ')}, {m} left out, the "
-        "recommended curve and its tangent. Lower panel: residuals of that curve."
+    return text_of(
+        "sweep_figure.description", n=n, component=sweep.component, sweep=axis_name(sweep).replace("  ", " "), m=m
     )

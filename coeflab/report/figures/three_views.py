@@ -23,7 +23,7 @@ from coeflab.report.figures.body import FRONT, SIDE, TOP, Sheet, rulers
 from coeflab.report.figures.body_scene import part_facets, picture_surface
 from coeflab.report.figures.outline_overlay import STYLES, drawn, overlay
 from coeflab.report.figures.palette import COLOURS
-from coeflab.report.figures.svg import POINTS, settings, sheet, svg_text
+from coeflab.report.figures.svg import paper, settings, sheet, svg_text
 
 WIDTH, MARGIN, GAP = 720.0, 16.0, 26.0
 LEFT, BELOW, CAPTION, SIZES, KEY = 36.0, 26.0, 20.0, 24.0, 40.0
@@ -96,11 +96,7 @@ def _drawn(body: Body) -> Drawing:
     )
     rows = [scale * float(size[2]) + CAPTION + BELOW + SIZES, scale * float(size[1]) + CAPTION + BELOW + SIZES]
     height = 2.0 * MARGIN + sum(rows) + GAP + KEY
-    figure = Drawing(figsize=(WIDTH / POINTS, height / POINTS))
-    axes = figure.add_axes((0.0, 0.0, 1.0, 1.0))
-    axes.set_axis_off()
-    axes.set_xlim(0.0, WIDTH)
-    axes.set_ylim(0.0, height)
+    figure, axes = paper(WIDTH, height)
     tops = height - MARGIN, height - MARGIN - rows[0] - GAP
     first, second = MARGIN + LEFT, MARGIN + 2.0 * LEFT + scale * float(size[0]) + GAP
     for view, left, top in ((SIDE, first, tops[0]), (FRONT, second, tops[0]), (TOP, first, tops[1])):

@@ -16,11 +16,12 @@ from coeflab.motion.uncertainty.spread import Importance, Spread
 from coeflab.motion.uncertainty.uncertainty import Carried
 from coeflab.report.document import Figure, Series
 from coeflab.report.figures.palette import COLOURS
-from coeflab.report.figures.panel import BOTTOM, WIDTH, drawing, legend, panel, tick_texts, ticks
+from coeflab.report.figures.panel import BOTTOM, drawing, legend, panel, row_panel
 from coeflab.report.figures.series import numbers, points
 from coeflab.report.figures.svg import settings, svg_text
 from coeflab.report.notation import as_users_wrote
 from coeflab.report.tables.uncertainty import SMALL, shown_unit
+from coeflab.report.texts import text_of
 
 TALL, LEGEND = 220.0, 32.0
 LEFT, RIGHT, ROW, THICK = 124.0, 44.0, 18.0, 0.6
@@ -115,8 +116,7 @@ def bars(found: Importance, anchor: str) -> Figure:
     meant = (
         "First-order and total Sobol indices of groups of correlated numbers."
         if grouped
-        else "What share of the variance would go if this number were known exactly. The numbers are correlated, so that shares "
-        "may add up to more than one."
+        else text_of("uncertainty_figures.known")
     )
     return Figure(anchor, svg, title, meant, description, (shown,))
 
@@ -139,27 +139,14 @@ def _label(symbols: tuple[str, ...]) -> str:
 
 
 def _draw(figure: Drawing, rows: list[Bar], height: float, name: str) -> Axes:
-    width, tall = WIDTH - LEFT - RIGHT, height - BOTTOM - LEGEND
-    axes = figure.add_axes((LEFT / WIDTH, BOTTOM / height, width / WIDTH, tall / height))
-    axes.set_axis_off()
     reach = max([0.2, *(max(first, bounds[1], total or 0.0) for _, first, bounds, total in rows)]) * 1.04
-    across, count = (0.0, reach), max(len(rows), int(tall / (2.0 * ROW)))
-    axes.set_xlim(*across)
-    axes.set_ylim(-0.5, count - 0.5)
-    at = ticks(across, 6)
-    axes.vlines(at, -0.5, count - 0.5, color=COLOURS["rule"], linewidth=0.5, zorder=0)
-    axes.axvline(0.0, color=COLOURS["muted"], linewidth=0.6, zorder=3)
-    for k, (label, first, bounds, total) in enumerate(rows):
+    count = max(len(rows), int((height - BOTTOM - LEGEND) / (2.0 * ROW)))
+    named = [(label, f"{max(first, 0.0):.2f}") for label, first, _, _ in rows]
+    axes = row_panel(figure, (LEFT, RIGHT, BOTTOM, LEGEND), (0.0, reach), named, count, name)
+    for k, (_, first, bounds, total) in enumerate(rows):
         y = count - 1.0 - k
         if total is not None:
             axes.barh(y, max(total, 0.0), height=THICK, color=COLOURS["band"], zorder=1.5)
             axes.plot(np.clip(bounds, 0.0, None), [y, y], color=COLOURS["ink"], linewidth=0.9, zorder=4)
         axes.barh(y, max(first, 0.0), height=THICK * (0.5 if total is not None else 1.0), color=COLOURS["a"], zorder=2)
-        base = (BOTTOM + (y + 0.5) * tall / count - 2.9) / height
-        figure.text((LEFT - 5.5) / WIDTH, base, label, ha="right", va="baseline")
-        figure.text((WIDTH - RIGHT + 5.5) / WIDTH, base, f"{max(first, 0.0):.2f}", ha="left", va="baseline")
-    for x, text in zip(at, tick_texts(at), strict=True):
-        place = LEFT + width * float(x) / reach
-        figure.text(place / WIDTH, (BOTTOM - 13.5) / height, text, ha="center", va="baseline")
-    figure.text((LEFT + width / 2.0) / WIDTH, (BOTTOM - 27.5) / height, name, ha="center", va="baseline")
     return axes

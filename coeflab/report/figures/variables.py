@@ -14,9 +14,9 @@ import numpy as np
 from coeflab.core.table import number
 from coeflab.core.types import Array
 from coeflab.fits.results.fitted_model import FittedModel, chance
-from coeflab.law.domain import Extrapolation
 from coeflab.law.symbols import ANGULAR, COMPONENTS, CONTROLS, LINEAR, primed
 from coeflab.report.figures.palette import COLOURS, power_of_ten, superscript
+from coeflab.report.texts import text_of
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -140,11 +140,9 @@ def beside(axes: Axes, model: FittedModel, variable: str, factor: float) -> list
     return hollow(axes, x[seen], aside.y[seen] * factor) if np.any(seen) else []
 
 
-BEYOND = {
-    Extrapolation.REFUSE: "a reader is to refuse",
-    Extrapolation.CLAMP: "a reader is to take the value at the nearest point of the data",
-    Extrapolation.TAPER: "a reader is to blend into the value at the nearest point of the data",
-}
+def beyond(model: FittedModel) -> str:
+    """What a reader outside the domain is to do."""
+    return text_of(f"variables_figure.{model.domain.rule.name.lower()}")
 
 
 def band_in_words(model: FittedModel) -> str:

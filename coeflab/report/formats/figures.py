@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping
 
-from coeflab.report.document import Document, Figure, Section
+from coeflab.report.document import Document, Figure, every
 from coeflab.report.figures.files import files_of
 
 summary = "every figure as SVG, PDF and PNG, and its numbers as CSV"
@@ -23,16 +23,10 @@ def render(document: Document) -> Mapping[str, bytes]:
     mapping of file name to bytes
         ``figures/ANCHOR.svg`` and the like; equal documents give equal bytes.
     """
-    found = list(_figures(document.sections))
+    found = [f for section in every(document.sections) for f in section.figures]
     if document.answer is not None:
         found = [f for f in (document.answer.slope, document.answer.forest) if isinstance(f, Figure)] + found
     out: dict[str, bytes] = {}
     for figure in found:
         out.update(files_of(figure))
     return out
-
-
-def _figures(sections: Sequence[Section]) -> Iterator[Figure]:
-    for section in sections:
-        yield from section.figures
-        yield from _figures(section.subsections)

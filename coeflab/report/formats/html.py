@@ -9,26 +9,25 @@ from __future__ import annotations
 
 import base64
 import hashlib
-import json
 import re
 from collections import Counter
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from importlib.resources import files
 from itertools import count
 from typing import Any
 
 import numpy as np
-from jinja2 import BaseLoader, Environment, StrictUndefined
 from markupsafe import Markup
 from numpy.typing import NDArray
 
-from coeflab.core.table import ABSENT, coefficient, plus_minus, with_u95
+from coeflab.core.table import ABSENT, coefficient, plus_minus
 from coeflab.core.text.bounded import own_text
 from coeflab.law.symbols import primed
-from coeflab.report.document import Answer, AnswerRow, Axis, Document, Figure, Layer, Panel, Scene, Section, Series
+from coeflab.report.document import Answer, AnswerRow, Axis, Document, Figure, Layer, Panel, Scene, Series, every
 from coeflab.report.figures.first_page import share_text
 from coeflab.report.figures.svg import size_of
+from coeflab.report.formats import inside_a_page, page_environment
 from coeflab.report.glossary import definitions_html, linked_html
 from coeflab.report.notation import cell_html, html, keeping, label, unit_html, unit_label
 from coeflab.report.printable import shortened, visible
@@ -40,7 +39,7 @@ KINDS = {1: "points", 2: "lines", 3: "triangles"}
 def panels_json(figure: Figure) -> str:
     """What a page needs to tell the values of a drawing; empty where there is nothing to tell."""
     words = [p for p in figure.panels if p.series]
-    return _inside_a_page({"title": visible(figure.title), "panels": [_panel(p) for p in words]}) if words else ""
+    return inside_a_page({"title": visible(figure.title), "panels": [_panel(p) for p in words]}) if words else ""
 
 
 def scene_json(scene: Scene) -> str:
@@ -53,13 +52,7 @@ def scene_json(scene: Scene) -> str:
         "axes": [_axis(a) for a in scene.axes],
         "layers": [_layer(layer, scene.axes) for layer in scene.layers],
     }
-    return _inside_a_page(content)
-
-
-def _inside_a_page(content: dict[str, Any]) -> str:
-    """JSON without the characters that could end a script element."""
-    text = json.dumps(content, separators=(",", ":"), ensure_ascii=False, allow_nan=False)
-    return text.replace("&", "\\u0026").replace("<", "\\u003c").replace(">", "\\u003e")
+    return inside_a_page(content)
 
 
 def _panel(panel: Panel) -> dict[str, Any]:
@@ -141,9 +134,7 @@ def render(document: Document) -> Mapping[str, bytes]:
         ``report.html``; equal documents give equal bytes.
     """
     folder = files("coeflab.report.formats") / "_html"
-    environment = Environment(
-        loader=BaseLoader(), autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True
-    )
+    environment = page_environment()
     environment.globals |= {
         "panels_json": panels_json,
         "scene_json": scene_json,
@@ -192,9 +183,7 @@ class Row:
 def row_of(row: AnswerRow) -> Row:
     """The words of a row; the difference has the digits of its U95."""
     own = plus_minus(row.value, row.u95) if row.u95 is not None else coefficient(row.value)
-    difference = with_u95(row.difference, row.u95)[0]
-    sign = "+" * (row.difference is not None and row.difference > 0.0)
-    against = ABSENT if row.share is None else f"{row.share:+.2f}" if abs(row.share) < 10.0 else f"{row.share:+.0f}"
+    difference, against = row.apart
     verdict = "missing" if row.value is None else {True: "agrees", False: "differs", None: "open"}[row.agrees]
     share = share_text(row.u95 / row.value) if row.u95 is not None and row.value else ABSENT
     return Row(
@@ -202,7 +191,7 @@ def row_of(row: AnswerRow) -> Row:
         own,
         share,
         row.status or "no data" * (row.value is None),
-        sign + difference,
+        difference,
         against,
         verdict,
     )
@@ -234,7 +223,7 @@ def rows_json(answer: Answer) -> str:
         }
         for r in answer.rows
     ]
-    return _inside_a_page({"rows": rows})
+    return inside_a_page({"rows": rows})
 
 
 @dataclass(frozen=True, slots=True)
@@ -267,27 +256,14 @@ def is_broad(figure: Figure) -> bool:
 
 def anchors(document: Document) -> frozenset[str]:
     """What links inside the page can lead to."""
-
-    def of(sections: tuple[Section, ...]) -> Iterator[str]:
-        for section in sections:
-            yield section.anchor
-            yield from (f.anchor for f in section.figures)
-            yield from of(section.subsections)
-
-    return frozenset(of(document.sections))
+    return frozenset(a for s in every(document.sections) for a in (s.anchor, *(f.anchor for f in s.figures)))
 
 
 def has_scene(document: Document) -> bool:
     """Whether a figure of the page turns in space."""
-
-    def of(sections: tuple[Section, ...]) -> Iterator[Figure]:
-        for section in sections:
-            yield from section.figures
-            yield from of(section.subsections)
-
     first = document.answer
     shown = () if first is None else tuple(f for f in (first.slope, first.forest, first.axes) if f is not None)
-    return any(f.scene is not None for f in (*shown, *of(document.sections)))
+    return any(f.scene is not None for f in (*shown, *(f for s in every(document.sections) for f in s.figures)))
 
 
 _DRAWING = re.compile(r"<svg .*?</svg>", re.DOTALL)

@@ -9,7 +9,7 @@ from importlib.resources import files
 from math import ceil
 from typing import NamedTuple
 
-from coeflab.core.table import ABSENT, Table, percent, plus_minus, with_u95
+from coeflab.core.table import ABSENT, Table, percent, plus_minus
 from coeflab.core.text.bounded import own_text
 from coeflab.core.version import VERSION
 from coeflab.report.document import Answer, AnswerRow, Document, Section
@@ -114,7 +114,7 @@ def _wanted(answer: Answer) -> Table:
     """The wanted coefficients beside published ones."""
     compared = bool(answer.compared)
     headers = ("", "ours +- U95", "U95 %", *answer.columns, *(("difference", "difference / U95") * compared), "from")
-    rows = tuple((*_ours(r), *_published(r, answer), *(_difference(r) * compared), r.source) for r in answer.rows)
+    rows = tuple((*_ours(r), *_published(r, answer), *(r.apart * compared), r.source) for r in answer.rows)
     title = "Primed coefficients with their 95 % half-width U95" + " and published values" * compared
     return Table(title, headers, rows, answer.notes, frozenset({0, len(headers) - 1}))
 
@@ -129,12 +129,6 @@ def _ours(row: AnswerRow) -> tuple[str, str, str]:
 def _published(row: AnswerRow, answer: Answer) -> tuple[str, ...]:
     shown = (*row.shown, *[None] * len(answer.columns))[: len(answer.columns)]
     return tuple("no data" if value is None else value for value in shown)
-
-
-def _difference(row: AnswerRow) -> tuple[str, str]:
-    sign = "+" if row.difference is not None and row.difference > 0.0 else ""
-    share = ABSENT if row.share is None else f"{row.share:+.2f}" if abs(row.share) < 10.0 else f"{row.share:+.0f}"
-    return sign + with_u95(row.difference, row.u95)[0], share
 
 
 def _section(section: Section, level: int) -> Iterator[str]:

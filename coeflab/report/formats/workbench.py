@@ -5,17 +5,16 @@ Slopes are those of the Python code; what follows from them is recomputed in the
 
 from __future__ import annotations
 
-import json
 from collections.abc import Mapping
 from importlib.resources import files
 
-from jinja2 import BaseLoader, Environment, StrictUndefined
 from markupsafe import Markup
 
-from coeflab.core.errors import InputError
 from coeflab.core.text.bounded import own_text
+from coeflab.core.texts import input_error
 from coeflab.report.bench import BenchData
 from coeflab.report.document import Document
+from coeflab.report.formats import inside_a_page, page_environment
 from coeflab.report.printable import visible
 
 summary = "one HTML file to take points or angles out of a sweep and see slope, U95, G_h and zigzag follow"
@@ -41,13 +40,8 @@ def render(document: Document) -> Mapping[str, bytes]:
         The document has no sweep with a slope.
     """
     if document.bench is None:
-        raise InputError(
-            f"{document.title}, without a sweep that gives a slope", "a study with slopes at the origin", column="--to",
-            advice="Publications reproduced have no workbench; a plan of your own tables has.",
-        )  # fmt: skip
-    environment = Environment(
-        loader=BaseLoader(), autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True
-    )
+        raise input_error("report.without_sweep_gives_slope", column="--to", title=document.title)
+    environment = page_environment()
     environment.filters["visible"] = visible
     page = environment.from_string(source("workbench.html.j2")).render(
         document=document,
@@ -73,5 +67,4 @@ def numbers() -> str:
 
 def data_json(bench: BenchData) -> str:
     """What the page computes with, without the characters that could end a script element."""
-    text = json.dumps(bench.content(), separators=(",", ":"), ensure_ascii=True, allow_nan=False)
-    return text.replace("&", "\\u0026").replace("<", "\\u003c").replace(">", "\\u003e")
+    return inside_a_page(bench.content(), ascii_only=True)

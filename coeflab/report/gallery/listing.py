@@ -8,7 +8,7 @@ from __future__ import annotations
 import math
 import os
 import re
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from datetime import UTC, datetime
 from html.parser import HTMLParser
 from pathlib import Path
@@ -19,7 +19,7 @@ from coeflab.core.errors import CoeflabError, InputError
 from coeflab.core.table import percent, plus_minus
 from coeflab.core.text.bounded import stream_of
 from coeflab.core.text.json import parse_json
-from coeflab.core.types import brief
+from coeflab.core.types import dataclass
 from coeflab.report.document import digest_of
 from coeflab.report.printable import shortened
 from coeflab.vehicle.parameter_file import ParameterFile, read_parameter_file
@@ -78,7 +78,6 @@ DRAWN = re.compile(r'<svg xmlns="http://www.w3.org/2000/svg" viewBox="[\d. ]+" r
 ROWS = re.compile(r'<script type="application/json" class="rows">(.*?)</script>', re.DOTALL)
 
 
-@brief
 @dataclass(frozen=True, slots=True)
 class Valued:
     """A coefficient of a report or of a parameter file.
@@ -106,7 +105,6 @@ class Valued:
         return self.status if self.value is None else plus_minus(self.value, self.u95)
 
 
-@brief
 @dataclass(frozen=True, slots=True)
 class ReportEntry:
     """A report.
@@ -160,7 +158,6 @@ class ReportEntry:
         return f"{self.path} {self.title} {self.study} {self.digest} {self.verdict} {self.written} {symbols}".casefold()
 
 
-@brief
 @dataclass(frozen=True, slots=True)
 class ParameterEntry:
     """A parameter file; attributes as of `ReportEntry`. The digest is that of the inputs that it names."""
@@ -205,7 +202,6 @@ class ParameterEntry:
 Entry = ReportEntry | ParameterEntry
 
 
-@brief
 @dataclass(frozen=True, slots=True)
 class Listing:
     """Everything that was found; ``more`` when the folder holds more than is read."""
@@ -259,7 +255,6 @@ def _bare(symbol: str) -> str:
 Stamp = tuple[int, int]
 
 
-@brief
 @dataclass(slots=True)
 class Shelf:
     """A folder and what was read of it; a file is read again when it changes.

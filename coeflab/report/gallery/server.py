@@ -13,7 +13,7 @@ import hashlib
 import os
 import re
 import shutil
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from functools import cache, lru_cache
 from http import HTTPStatus
 from http.server import BaseHTTPRequestHandler
@@ -29,6 +29,7 @@ from coeflab.core.errors import CoeflabError, InputError, OutputError, shown
 from coeflab.core.files import typed
 from coeflab.core.table import Table
 from coeflab.core.text.bounded import own_text, stream_of
+from coeflab.report.formats import page_environment
 from coeflab.report.gallery.listing import SERVED, Listing, ParameterEntry, Shelf, fault, place_of
 from coeflab.report.notation import cell_html, html, keeping, users_texts
 from coeflab.report.printable import shortened, visible
@@ -195,15 +196,9 @@ def _style() -> str:
 
 @cache
 def _templates() -> Any:
-    from jinja2 import DictLoader, Environment, StrictUndefined
-
     folder = files("coeflab.report") / "gallery"
-    texts: Mapping[str, str] = {
-        name: own_text(folder / f"{name}.html.j2") for name in ("frame", "index", "comparison", "refusal")
-    }
-    result = Environment(
-        loader=DictLoader(texts), autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True
-    )
+    names = ("frame", "index", "comparison", "refusal")
+    result = page_environment({name: own_text(folder / f"{name}.html.j2") for name in names})
     result.filters |= {
         "symbols": symbols, "named": named, "shortened": cut, "spelled": spelled, "spelled_cell": spelled_cell
     }  # fmt: skip

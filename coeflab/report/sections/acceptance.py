@@ -6,6 +6,7 @@ Every number of a publication as one mark: its difference over what is allowed, 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -14,10 +15,9 @@ from matplotlib.figure import Figure as Drawing
 from matplotlib.lines import Line2D
 
 from coeflab.core.provenance import InputFile, work
-from coeflab.core.table import Table
 from coeflab.core.types import Array
 from coeflab.report import acceptance as acceptance_tables
-from coeflab.report.acceptance import BASES, Acceptance, Basis, Compared, ComparedTable, overview, share
+from coeflab.report.acceptance import Acceptance, Basis, Compared, ComparedTable, overview, share
 from coeflab.report.document import Document, Figure, Panel, Section, digest_of, published_reproduction
 from coeflab.report.figures.palette import COLOURS
 from coeflab.report.figures.panel import BOTTOM, COLUMNS, LEGEND_ROW, RIGHT, WIDTH, drawing, height_of, legend, ticks
@@ -25,6 +25,7 @@ from coeflab.report.figures.series import numbers, points, tagged
 from coeflab.report.figures.svg import settings, svg_text
 from coeflab.report.first_page import answer
 from coeflab.report.sections.conventions import published_conventions
+from coeflab.report.texts import table_of, text_of
 
 ACROSS = "difference / tolerance  [-]"
 EDGE, BEYOND = 1.28, 1.18
@@ -39,10 +40,6 @@ MARKS: dict[Basis, dict[str, Any]] = {
     Basis.CONSISTENCY: {"marker": "o", "markersize": 4.0, "markeredgecolor": COLOURS["a"], "markerfacecolor": COLOURS["a"], **FILLED},
 }  # fmt: skip
 OUTSIDE: dict[str, Any] = {"marker": "x", "markersize": 5.0, "markeredgecolor": COLOURS["ink"], "markeredgewidth": 1.3}
-CAPTION = (
-    "One mark for each comparison, in the order of its table: our difference from the reference over the tolerance. Marks between -1 and 1 "
-    "pass. For a number with an upper limit the mark is its share of the limit."
-)
 
 
 def allowance_figure(found: Acceptance, anchor: str) -> Figure:
@@ -56,11 +53,11 @@ def allowance_figure(found: Acceptance, anchor: str) -> Figure:
     rows = [r for t in found.tables for r in t.rows]
     held = sum(r.holds for r in rows)
     title = f"{held} of {len(rows)} comparisons within the tolerance"
-    heights = [_height(len(t.rows)) for t in found.tables]
+    heights = [min(max(LEAST, ROW * len(t.rows)), MOST) for t in found.tables]
     body = sum(heights) + HEAD * len(heights)
     description = (
         "One strip a table, one mark a number at its difference over the tolerance: "
-        + "; ".join(f"{t.title}: {_count(t)}" for t in found.tables)
+        + "; ".join(f"{t.title}: {t.within}" for t in found.tables)
         + "."
     )
     with settings():
@@ -74,22 +71,14 @@ def allowance_figure(found: Acceptance, anchor: str) -> Figure:
         _scale(figure)
         legend(figure, handles, BOTTOM + body)
         svg = svg_text(figure, anchor, title, description)
-    return Figure(anchor, svg, title, CAPTION, description, tuple(panels))
-
-
-def _height(count: int) -> float:
-    return min(max(LEAST, ROW * count), MOST)
-
-
-def _count(t: ComparedTable) -> str:
-    return f"{sum(r.holds for r in t.rows)} of {len(t.rows)}"
+    return Figure(anchor, svg, title, text_of("acceptance.caption"), description, tuple(panels))
 
 
 def _heading(figure: Drawing, top: float, t: ComparedTable) -> None:
     name = t.title if len(t.title) <= LONGEST else t.title[:LONGEST].rsplit(" ", 1)[0].rstrip(",") + " …"
     level = (top - HEAD + 4.0) / height_of(figure)
     figure.text(INDENT / WIDTH, level, name, va="baseline", fontsize=8.25)
-    figure.text((WIDTH - RIGHT) / WIDTH, level, _count(t), va="baseline", ha="right", color=COLOURS["muted"])
+    figure.text((WIDTH - RIGHT) / WIDTH, level, t.within, va="baseline", ha="right", color=COLOURS["muted"])
 
 
 def _axes(figure: Drawing, bottom: float, height: float, up: tuple[float, float]) -> Axes:
@@ -175,24 +164,24 @@ def document(found: Acceptance, inputs: tuple[InputFile, ...] = ()) -> Document:
     sections = (
         verdict(found),
         *_section("figures", "Figures", figures=figures(found)),
-        Section("compared", "Every number and its reference", (DIFFERENCES,), subsections=tables),
+        Section("compared", "Every number and its reference", (text_of("acceptance.differences"),), subsections=tables),
         *_section("statements", "What to know", found.statements),
         *_section("parameter-files", "Parameter files", found.file_notes),
         *_errata(found),
         published_conventions(found.conventions),
         *_provenance(inputs),
-        published_reproduction(found, inputs),
+        published_reproduction(found.name, inputs),
     )
     works = tuple((k, work(k)) for k in found.citations)
-    return Document(found.title, SUBTITLE, sections, found.name, digest_of(inputs), works, answer=answer(found))
-
-
-SUBTITLE = "A publication reproduced: every number and its reference"
-DIFFERENCES = (
-    "Reference: the paper prints it only where the column basis says so. Difference: found minus reference; with a % sign, in % "
-    "of the reference. A number passes when the difference is within the tolerance."
-)
-PROVENANCE = "The files below are identified by the sha256 of their bytes."
+    return Document(
+        found.title,
+        text_of("acceptance.subtitle"),
+        sections,
+        found.name,
+        digest_of(inputs),
+        works,
+        answer=answer(found),
+    )
 
 
 def verdict(found: Acceptance) -> Section:
@@ -203,7 +192,7 @@ def verdict(found: Acceptance) -> Section:
         failed = [f"{r.quantity} of {r.case}" for r in t.rows if not r.holds]
         if failed:
             text.append(f"Outside, {t.title}: {', '.join(failed)}.")
-    text += [f"{b.value.capitalize()}: {meaning}." for b, meaning in BASES.items() if found.counts[b]]
+    text += [f"{b.capitalize()}: {text_of(f'acceptance.{b}')}." for b in Basis if found.counts[b]]
     drawn = (allowance_figure(found, "allowances"),) if rows else ()
     return Section("verdict", "Verdict", tuple(text), (overview(found),), drawn)
 
@@ -219,7 +208,7 @@ def headline(found: Acceptance) -> tuple[str, ...]:
 
 def figures(found: Acceptance) -> tuple[Figure, ...]:
     """Its drawings."""
-    return tuple(Figure(d.anchor, d.svg, d.title, d.caption, d.description, d.panels) for _, d in found.figures)
+    return tuple(replace(drawn, scene=None) for _, drawn in found.figures)
 
 
 def _section(
@@ -238,5 +227,5 @@ def _provenance(inputs: tuple[InputFile, ...]) -> tuple[Section, ...]:
     if not inputs:
         return ()
     rows = tuple((f.name, f.sha256) for f in inputs)
-    table = Table("Inputs", ("file", "sha256"), rows, (), frozenset({0, 1}))
-    return (Section("provenance", "Provenance", (PROVENANCE,), (table,)),)
+    table = table_of("acceptance.provenance", rows)
+    return (Section("provenance", "Provenance", (text_of("acceptance.by_sha256"),), (table,)),)

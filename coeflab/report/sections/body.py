@@ -11,11 +11,10 @@ Added mass in a report: the bodies, every method side by side, and what is booke
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.figure import Figure as Drawing
 
 from coeflab.bodies.body import Body
 from coeflab.bodies.forms import Plate
@@ -26,19 +25,21 @@ from coeflab.bodies.pieces import HULL, Piece
 from coeflab.bodies.shape import Parts, Shape
 from coeflab.bodies.triangulation import RULE, Triangulation
 from coeflab.core.table import plus_minus
-from coeflab.core.types import Array, brief
+from coeflab.core.types import Array, dataclass
+from coeflab.core.wording import collected
 from coeflab.formats import loss_tables
 from coeflab.law.coefficient import CoefficientSet
 from coeflab.report.document import Axis, Figure, Layer, Scene, Section
 from coeflab.report.figures.body import MARGIN, SIDE, TOP, Sheet, View, body_figure
 from coeflab.report.figures.body_scene import COLOUR_OF, POOR, form_name, is_poor, part_facets, picture_surface
 from coeflab.report.figures.palette import COLOURS
-from coeflab.report.figures.svg import POINTS, settings, svg_text
+from coeflab.report.figures.svg import paper, settings, svg_text
 from coeflab.report.notation import as_users_wrote
 from coeflab.report.sections.campaign import filled
 from coeflab.report.tables import added_mass as tables
 from coeflab.report.tables import nouns as noun_tables
 from coeflab.report.tables.added_mass import particulars
+from coeflab.report.texts import text_of
 from coeflab.study.study import Study
 from coeflab.vehicle.parameter_file import ParameterFile
 from coeflab.vehicle.stability import CENTRES, Derived, centre_of_pressure
@@ -80,11 +81,7 @@ def hull_figure(body: Body, anchor: str, width: float = WIDTH, gravity: Array | 
     title = f"{body.name}: outline"
     words = f"Outlines of {body.name} from starboard and from above, {size[0]:.3g} by {size[1]:.3g} by {size[2]:.3g} m."
     with settings():
-        figure = Drawing(figsize=(width / POINTS, height / POINTS))
-        axes = figure.add_axes((0.0, 0.0, 1.0, 1.0))
-        axes.set_axis_off()
-        axes.set_xlim(0.0, width)
-        axes.set_ylim(0.0, height)
+        figure, axes = paper(width, height)
         top = height - MARGIN
         for view, row in zip((SIDE, TOP), rows, strict=True):
             _view(axes, view, surface, scale, width, top, marks)
@@ -124,7 +121,6 @@ SKIN = 0.75
 ROOM = 0.04
 
 
-@brief
 @dataclass(frozen=True, slots=True, eq=False)
 class Mark:
     """A point of a body that is known by a name.
@@ -195,9 +191,7 @@ def _at(place: Array) -> str:
 
 def _parts(shape: Parts) -> tuple[Layer, ...]:
     """One layer a form, so that a form is one entry of the legend; poor stand-ins apart, and dark."""
-    forms: dict[tuple[str, bool], list[Array]] = {}
-    for part in shape.parts:
-        forms.setdefault((form_name(part.form), is_poor(part)), []).append(part_facets(part))
+    forms = collected(((form_name(part.form), is_poor(part)), part_facets(part)) for part in shape.parts)
     out = []
     for (form, poor), facets in forms.items():
         corners = np.concatenate(facets)[:, [0, 1, 2, 0, 2, 3]].reshape(-1, 3)
@@ -375,20 +369,14 @@ def added_mass_sections(study: Study) -> tuple[Section, ...]:
     """One section, or none where no parameter file has a hull."""
     if not study.hulls:
         return ()
-    first: dict[str, Triangulation] = {}
-    users: dict[str, list[str]] = {}
-    for name, found in study.hulls.items():
-        first.setdefault(found.body.name, found)
-        users.setdefault(found.body.name, []).append(name)
+    users = collected((found.body.name, name) for name, found in study.hulls.items())
     text = (
-        "Added mass in unbounded fluid by every method that applies, about the body's reference point. Potential theory is "
-        "not tuned to a measurement: where one stands beside it, the gap is shown.",
+        text_of("body.added_mass"),
         f"Recommended by this rule: {RULE}.",
-        "A force measured in steady motion holds an ideal fluid's part, an entry of -C_A(nu) nu such as the Munk moment in "
-        "Nv' and Mw'. It is booked apart, so that a simulator that adds C_A(nu) itself is given the viscous part alone.",
+        text_of("body.potential"),
     )
     bodies = tuple(
-        _body(study, found, tuple(users[name]), f"hull-{i}") for i, (name, found) in enumerate(first.items())
+        _body(study, study.hulls[names[0]], tuple(names), f"hull-{i}") for i, names in enumerate(users.values())
     )
     files = tuple(
         Section(

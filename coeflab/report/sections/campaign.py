@@ -28,7 +28,7 @@ from coeflab.report.figures.estimator import estimator_figure
 from coeflab.report.figures.incidence import ACROSS, incidence_figure
 from coeflab.report.figures.model import distinct, model_figures, over_what
 from coeflab.report.figures.palette import COLOURS, power_of_ten
-from coeflab.report.figures.panel import tick_texts, ticks
+from coeflab.report.figures.panel import row_panel
 from coeflab.report.figures.series import numbers, points
 from coeflab.report.figures.svg import POINTS, settings, svg_text
 from coeflab.report.figures.sweep import sweep_figure
@@ -43,6 +43,7 @@ from coeflab.report.tables import sources as source_tables
 from coeflab.report.tables import sweeps as sweep_tables
 from coeflab.report.tables import uncertainty as budget_tables
 from coeflab.report.tables.uncertainty import SET
+from coeflab.report.texts import text_of
 from coeflab.study.lines import MEANING
 from coeflab.study.study import Study
 from coeflab.study.symmetry import zeros
@@ -53,7 +54,6 @@ from coeflab.vehicle.reference import Relation
 from coeflab.vehicle.stability import centre_of_pressure, stability
 
 LONGEST = 80
-AS_BEFORE = "Data, sources and the table of all coefficients stand in the section of the first fit of this campaign."
 
 
 def filled(*several: Table) -> tuple[Table, ...]:
@@ -88,7 +88,7 @@ def campaign_section(study: Study, fit: FitResult, place: str, taken: set[str]) 
     if sum(f.campaign == fit.campaign for f in study.fits) > 1:
         title = f"{title} ({fit.fit})"
     again = _first_of(study, fit) is not fit
-    text = [AS_BEFORE] if again else [*(line for t in mine for line in _about(t)), *_obtained(mine)]
+    text = [text_of("campaign.as_before")] if again else [*(line for t in mine for line in _about(t)), *_obtained(mine)]
     zero = zeros(study, fit.campaign, fit.coefficients.coefficients)
     alone = [s for s in fit.sweeps if s.symbol not in {c.symbol for c in zero} and not s.by_symmetry]
     own = next((t for t in study.plan.tows if t.campaign == fit.campaign), None)
@@ -97,10 +97,7 @@ def campaign_section(study: Study, fit: FitResult, place: str, taken: set[str]) 
     text += [line for line in (in_one_line(zero), _in_the_table(fit, alone, zero)) if line]
     text += [r.in_words for r in fit.straight]
     if "swept about" in fit.settings:
-        text.append(
-            f"The rotating runs do not drift at {fit.settings['swept about']}: sweeps are about it, with their figures and "
-            "estimators; the coefficients in the tables are about the study's reference point."
-        )
+        text.append(text_of("campaign.swept_about", settings=fit.settings["swept about"]))
     return Section(
         place,
         title,
@@ -126,7 +123,9 @@ def campaign_section(study: Study, fit: FitResult, place: str, taken: set[str]) 
 
 def says_nothing(section: Section) -> bool:
     """Whether a later fit of a campaign brings nothing to its section but the pointer to the first one."""
-    return section.paragraphs == (AS_BEFORE,) and not (section.tables or section.figures or section.subsections)
+    return section.paragraphs == (text_of("campaign.as_before"),) and not (
+        section.tables or section.figures or section.subsections
+    )
 
 
 def _in_the_table(fit: FitResult, alone: list[Sweep], zero: Sequence[Coefficient]) -> str:
@@ -161,9 +160,17 @@ def _about(table: ForceTable) -> list[str]:
     cells = sum(mask.size for mask in table.usable.values())
     source = table.source
     text = [
-        f"{table.name}: {table.body.replace('_', ' ')}, {len(table)} rows; {usable} of {cells} force cells are usable. "
-        f"{table.run_at.capitalize()}. "
-        f"Source: {work(source.citation)}" + (f" {source.place}." if source.place else "")
+        text_of(
+            "campaign.about",
+            name=table.name,
+            body=table.body.replace("_", " "),
+            table=len(table),
+            usable=usable,
+            cells=cells,
+            run_at=table.run_at.capitalize(),
+            citation=work(source.citation),
+        )
+        + (f" {source.place}." if source.place else "")
     ]
     if table.notes:
         text.append(f"Done on reading: {'; '.join(table.notes)}.")
@@ -224,8 +231,12 @@ def _caveats(sweep: Sweep) -> list[str]:
     out = []
     if len(sweep.wrong):
         out.append(
-            f"Point {', '.join(sweep.labels[i] for i in sweep.wrong)} does not fit the others and does not carry the value; "
-            f"with it {primed(sweep.symbol)} would be {with_u95(sweep.with_all, sweep.u95)[0]}."
+            text_of(
+                "campaign.wrong",
+                names=", ".join(sweep.labels[i] for i in sweep.wrong),
+                symbol=primed(sweep.symbol),
+                with_all=with_u95(sweep.with_all, sweep.u95)[0],
+            )
         )
     shorter = [s for s in sweep.sensitivity if s.value is not None]
     if shorter and sweep.value is not None:
@@ -259,7 +270,7 @@ def tornado_figure(b: Budget, anchor: str) -> Figure:
     with settings():
         height = BOTTOM + TOP + ROW * max(len(bars), 1)
         figure = Drawing(figsize=(WIDTH / POINTS, height / POINTS))
-        axes = _bars(figure, bars, height, factor, f"change of {name}{power}")
+        axes = _bars(figure, bars, factor, f"change of {name}{power}")
         words = points(
             "bars", "95 % half-width", np.array([h for _, h in bars]), np.arange(len(bars))[::-1] + 0.0,
             [f"{label}, {percent(half, b.value)} of the value" for label, half in bars],
@@ -269,28 +280,15 @@ def tornado_figure(b: Budget, anchor: str) -> Figure:
     return Figure(anchor, svg, title, _caption(b), description, (shown,))
 
 
-def _bars(figure: Drawing, bars: list[tuple[str, float]], height: float, factor: float, name: str) -> Axes:
-    width, tall = WIDTH - LEFT - RIGHT, height - BOTTOM - TOP
-    axes = figure.add_axes((LEFT / WIDTH, BOTTOM / height, width / WIDTH, tall / height))
-    axes.set_axis_off()
+def _bars(figure: Drawing, bars: list[tuple[str, float]], factor: float, name: str) -> Axes:
     reach = 1.08 * factor * max((h for _, h in bars), default=0.0) or 1.0
-    across, rows = (-reach, reach), max(len(bars), 1)
-    axes.set_xlim(*across)
-    axes.set_ylim(-0.5, rows - 0.5)
-    at = ticks(across, 6)
-    axes.vlines(at, -0.5, rows - 0.5, color=COLOURS["rule"], linewidth=0.5, zorder=0)
-    axes.axvline(0.0, color=COLOURS["muted"], linewidth=0.6, zorder=3)
+    rows = [(label, f"± {half * factor:.3g}") for label, half in bars]
+    count = max(len(bars), 1)
+    axes = row_panel(figure, (LEFT, RIGHT, BOTTOM, TOP), (-reach, reach), rows, count, name)
     for row, (label, half) in enumerate(bars):
-        y, size = rows - 1.0 - row, half * factor
         colour = COLOURS["ink" if label == "U95" else "a" if label in MEASURED else "b" if label in STUDIED else "c"]
-        axes.barh(y, 2.0 * size, height=THICK, left=-size, color=colour, zorder=2)
-        base = (BOTTOM + (y + 0.5) * ROW - 2.9) / height
-        figure.text((LEFT - 5.5) / WIDTH, base, label, ha="right", va="baseline")
-        figure.text((WIDTH - RIGHT + 5.5) / WIDTH, base, f"± {size:.3g}", ha="left", va="baseline")
-    for x, text in zip(at, tick_texts(at), strict=True):
-        place = LEFT + width * (float(x) - across[0]) / (across[1] - across[0])
-        figure.text(place / WIDTH, (BOTTOM - 13.5) / height, text, ha="center", va="baseline")
-    figure.text((LEFT + width / 2.0) / WIDTH, (BOTTOM - 27.5) / height, name, ha="center", va="baseline")
+        size = half * factor
+        axes.barh(count - 1.0 - row, 2.0 * size, height=THICK, left=-size, color=colour, zorder=2)
     return axes
 
 
@@ -322,10 +320,8 @@ def budget_sections(study: Study) -> tuple[Section, ...]:
         *(budget_tables.shared(m) for m in models),
     )
     text = (
-        "U95 joins every assessed part as a root sum of squares: scatter of the points, model form, grid, and what studies of domain "
-        "and iterations show. What another turbulence model changes is stated beside it.",
-        "So do the inputs that a campaign declares under [uncertainty]: angle, speed, calibration, reference point, length. A part that "
-        "was not assessed is named, never zero.",
+        text_of("campaign.joined"),
+        text_of("campaign.inputs"),
     )
     turned = {(s.campaign, s.symbol) for f in study.fits for s in f.sweeps if s.by_symmetry}
     own_tows = {t.campaign for t in study.plan.tows if t.added is not None}  # in the overview alone
@@ -345,10 +341,7 @@ def budget_sections(study: Study) -> tuple[Section, ...]:
         )
         for i, b in enumerate(wanted)
     )
-    return (Section("budget", "Uncertainty budget", text, _filled(tables), subsections=parts),)
-
-
-CONDITIONS = "In CFD angle, rate, speed, length, density and reference point are set: they have no reading errors."
+    return (Section("budget", "Uncertainty budget", text, filled(*tables), subsections=parts),)
 
 
 def tow_sections(study: Study) -> tuple[Section, ...]:
@@ -360,8 +353,12 @@ def tow_sections(study: Study) -> tuple[Section, ...]:
     unassessed = dict.fromkeys(name for b in study.budgets if b.campaign in campaigns for name in b.unassessed)
     left = "; ".join(name for name in unassessed if name not in SET and not name.startswith("grid"))
     text: tuple[str, ...] = (
-        f"CFD of coeflab's virtual towing tank. Grid: the part of U95 that the grid study gives, in % of the value.{f' U95 leaves out: {left}.' * bool(left)} "
-        f"{CONDITIONS} {MEANING}",
+        text_of(
+            "campaign.own_tows",
+            left=f" U95 leaves out: {left}." * bool(left),
+            conditions=text_of("campaign.conditions"),
+            meaning=MEANING,
+        ),
         "E = S - D, simulation minus test, is compared with the validation uncertainty U_V (ASME V&V 20). A verdict needs a steady test of the same body.",
     )
     with_values = [one for one in found if any(r.value is not None for r in one.rows)]
@@ -371,9 +368,9 @@ def tow_sections(study: Study) -> tuple[Section, ...]:
         t for one in with_values
         for t in (own_cfd.own_tow(one), *(() if one.tow.campaign in judged else (own_cfd.tow_against(one),)))
     )  # fmt: skip
-    rest = _filled(tuple(own_cfd.own_tow(one) for one in found if one not in with_values))
+    rest = filled(*(own_cfd.own_tow(one) for one in found if one not in with_values))
     more = (Section("no-tow", "Own CFD without a value", tables=rest, appendix=True),) if rest else ()
-    return (Section("own-tows", "Own CFD", text, _filled(tuple(each)), subsections=more),)
+    return (Section("own-tows", "Own CFD", text, filled(*each), subsections=more),)
 
 
 def _nothing(found: Towed) -> str:
@@ -381,7 +378,3 @@ def _nothing(found: Towed) -> str:
     reasons = "; ".join(dict.fromkeys(r.why for r in found.rows if r.why))
     missing = listed(list(dict.fromkeys(r.missing for r in found.rows if r.missing)))
     return f"{found.tow.name}: {missing or 'no value'}{f', as {reasons}' if reasons else ''}."
-
-
-def _filled(tables: tuple[Table, ...]) -> tuple[Table, ...]:
-    return tuple(t for t in tables if t.rows)

@@ -16,6 +16,7 @@ from coeflab.report.tables import force_tables
 from coeflab.report.tables import nouns as noun_tables
 from coeflab.report.tables import results as tables
 from coeflab.report.tables.uncertainty import SET, sentences_on_open
+from coeflab.report.texts import table_of, text_of, texts_of
 from coeflab.study.study import Study
 from coeflab.study.symmetry import zeros
 
@@ -23,21 +24,8 @@ SLOPES = (
     "A slope is the weighted median of many fits to the whole sweep (docs/slope_at_origin.md); no published value is used. n: points in its fit. "
     "U95, the half-width of the 95 % interval, covers {}; what it leaves out stands below each table. --full has its parts."
 )
-OPEN = "Sign open: U95 exceeds the value. Use such a term only together with the other terms of the same fit."
 
-FIXED = (
-    "Each coefficient comes from a fit of the form that stands under Fitted models, or follows from it. No published value is used.",
-    "U95 holds the scatter of the points and what the residuals show that the form leaves out. Its parts are given in % of the value. "
-    "Input: declared errors of the inputs, and the grid. A dash: not assessed, so not in U95.",
-)
-UNBOUNDED = "Where an interval could not be had, the value is printed without U95 and should not be relied on."
-OF_TOWS = "The six derivatives of each own tow are under Own CFD. --full lists all its coefficients."
-PARTS = (
-    "Parts of U95, in % of the value. Random: scatter of the points. Form: unknown shape of the curve; a value without it assumes the shape of the force "
-    "law. Input: declared errors, and the grid. Slope: from the U95 of the slopes, which the fit of the term holds fixed. A dash: not assessed, not in U95.",
-)
 OPEN_SIGN = ", sign open"
-NONE = ("The fits give tables, see Fitted models, and no coefficient with a SNAME symbol.",)
 
 
 def in_one_line(found: Sequence[Coefficient]) -> str:
@@ -63,13 +51,15 @@ def _covered(study: Study, found: Sequence[Table]) -> tuple[str, ...]:
     whole = SLOPES.format(listed([*every[1:], *every[0].split(", ")]))
     only = (in_sentences(f"It covers the {name} only for ", places) for name, places in some.items())
     has_open = any(OPEN_SIGN in cell for t in found for row in t.rows for cell in row)
-    return (whole, *only, *((OPEN,) if has_open else ()))
+    return (whole, *only, *((text_of("coefficients.open"),) if has_open else ()))
 
 
 def coefficients_section(study: Study) -> Section:
     """What was found, by campaign; every column of it in the appendix."""
     is_swept = any(f.sweeps for f in study.fits)
-    text: tuple[str, ...] = () if is_swept else FIXED if study.coefficients else NONE
+    text: tuple[str, ...] = (
+        () if is_swept else texts_of("coefficients.fixed") if study.coefficients else texts_of("coefficients.none")
+    )
     result = {
         fit: t for fit in dict.fromkeys((f.campaign, f.body) for f in study.fits) if (t := _table(study, *fit)).rows
     }
@@ -77,13 +67,17 @@ def coefficients_section(study: Study) -> Section:
     found = tuple(t for (campaign, _), t in result.items() if campaign not in apart)
     text = _covered(study, found) if is_swept else text
     if any(c.status is Status.SINGLE_ESTIMATOR for c in study.coefficients):
-        text += (UNBOUNDED,)
+        text += (text_of("coefficients.unbounded"),)
     if any(c.status is Status.FORM_REJECTED for c in study.coefficients):
         text += (Status.FORM_REJECTED.advice,)
     if apart:
-        text += (OF_TOWS,)
+        text += (text_of("coefficients.of_tows"),)
     whole = tables.coefficients(study)
-    appendix = (Section("all-coefficients", "All columns", PARTS, (whole,), appendix=True),) if whole.rows else ()
+    appendix = (
+        (Section("all-coefficients", "All columns", texts_of("coefficients.parts"), (whole,), appendix=True),)
+        if whole.rows
+        else ()
+    )
     return Section("coefficients", "Coefficients", text, found, subsections=appendix)
 
 
@@ -114,9 +108,9 @@ def _table(study: Study, campaign: str, body: str) -> Table:
         *sentences_on_open(_of_some(name, budgets) for name in open_parts if not (computed and name in SET)),
         force_tables.unused([t for t in study.tables if t.campaign in campaign.split(", ")]), _wrong(study, campaign),
     ]  # fmt: skip
-    headers = ("", "value", "U95", "U95 %", "n")
-    title = f"{campaign}: {body.replace('_', ' ')}, primed"
-    return Table(title, headers, rows, tuple(n for n in notes if n), frozenset({0}))
+    return table_of(
+        "coefficients.table", rows, tuple(n for n in notes if n), campaign=campaign, body=body.replace("_", " ")
+    )
 
 
 def shorter_ranges(found: Sequence[Coefficient], tied: Collection[str]) -> str:

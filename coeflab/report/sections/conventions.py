@@ -9,13 +9,13 @@ from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.figure import Figure as Drawing
 from matplotlib.patches import Arc, FancyArrowPatch, Polygon
 
 from coeflab.core.types import Array
 from coeflab.report.document import Figure, Section
 from coeflab.report.figures.palette import COLOURS
-from coeflab.report.figures.svg import POINTS, settings, svg_text
+from coeflab.report.figures.svg import paper, settings, svg_text
+from coeflab.report.texts import text_of, texts_of
 from coeflab.study.study import Study
 
 WIDTH, HEIGHT = 340.0, 248.0
@@ -25,39 +25,7 @@ MIDDLES = {"plan": np.array([160.0, 118.0]), "profile": np.array([168.0, 136.0])
 AHEAD = {"plan": np.array([0.0, 1.0]), "profile": np.array([1.0, 0.0])}
 # Unit vectors along x, y, z on paper: an orthographic view from 35 degrees above, starboard and abaft.
 AXES = np.array([[0.820, 0.328], [0.572, -0.470], [0.0, -0.819]])
-VIEWS = (
-    (
-        "plan", "from above", "Sideslip and yaw, from above",
-        "Positive senses from above: v' = sin(beta).",
-        "A body from above, bow up: y to starboard, the velocity V between x and y, so that v and the sideslip beta are positive. "
-        "Yaw r turns the bow to starboard.",
-    ),
-    (
-        "profile", "from starboard", "Angle of attack and pitch, from starboard",
-        "Positive senses from starboard: w' = sin(alpha) cos(beta).",
-        "A body from starboard, bow to the right: z down, the velocity V between x and z, so that w and the angle of attack alpha are "
-        "positive. Pitch q raises the bow.",
-    ),
-    (
-        "triad", "obliquely", "Axes, forces and moments",
-        "Forces X, Y, Z and velocities u, v, w along the axes, moments K, M, N and rates p, q, r about them, right-handed.",
-        "Three axes from the reference point: x forward, y to starboard, z down; an arc about each goes from the next axis to the "
-        "one after.",
-    ),
-)  # fmt: skip
-# No source at hand states the sense of a control angle; the signs of measured derivatives do.
-TURNED = {
-    "plan": (
-        "The rudder is drawn where its force is to starboard, as a positive angle gives it in Roddy (1990), Table 4: "
-        "Ydr' > 0, Ndr' < 0. A table with another sign keeps it.",
-        "A rudder at the stern is turned to port.",
-    ),
-    "profile": (
-        "The stern plane is drawn where its force is up, as a positive angle gives it in Roddy (1990), Table 4: Zds' < 0, "
-        "Mds' < 0. A table with another sign keeps it.",
-        "A stern plane is turned down.",
-    ),
-}
+VIEWS = ("plan", "profile", "triad")
 
 
 def axes_figures(anchor: str, *, controls: bool = True) -> tuple[Figure, ...]:
@@ -72,15 +40,13 @@ def axes_figures(anchor: str, *, controls: bool = True) -> tuple[Figure, ...]:
     """
     draw = {"plan": _plan, "profile": _profile, "triad": _oblique}
     out = []
-    for key, view, title, *texts in VIEWS:
-        turned = TURNED.get(key) if controls else None
+    for key in VIEWS:
+        view, title, *texts = texts_of(f"conventions.{key}")
+        # No source at hand states the sense of a control angle; the signs of measured derivatives do.
+        turned = texts_of(f"conventions.{key}_turned") if controls and key != "triad" else ()
         caption, words = (" ".join(both) for both in zip(texts, turned or ("", ""), strict=True))
         with settings():
-            figure = Drawing(figsize=(WIDTH / POINTS, HEIGHT / POINTS))
-            axes = figure.add_axes((0.0, 0.0, 1.0, 1.0))
-            axes.set_axis_off()
-            axes.set_xlim(0.0, WIDTH)
-            axes.set_ylim(0.0, HEIGHT)
+            figure, axes = paper(WIDTH, HEIGHT)
             draw[key](axes)
             if turned:
                 _control(axes, key)
@@ -222,17 +188,6 @@ def _ring(axes: Axes, middle: Array, first: Array, second: Array) -> None:
 
 
 TITLE = "Conventions used"
-AXES_ROWS = "Axes: x forward, y to starboard, z down, in the body. X, Y, Z, K, M, N: of the fluid on the body."
-ANGLES = (
-    "Angles: v' = v/U = sin(beta), positive when the body moves to starboard (ITTC's drift angle has the other sign); w' = w/U = sin(alpha) cos(beta), "
-    "positive when it moves down."
-)
-CONTROLS = (
-    "A control angle keeps the sign of its table. Example: in Roddy's tests of SUBOFF (1990, Table 4) a positive rudder gives Y to "
-    "starboard (Ydr' = 0.005929), a positive stern plane gives Z up (Zds' = -0.005603)."
-)
-MOVED = "The rows of the tables are moved there and then fitted. Moving slopes after the fit gives slightly different values."
-POTENTIAL = "Velocity derivatives include their potential parts, such as the Munk moment. A simulator that adds -C_A(nu) nu itself must get them without these."
 
 
 def conventions_section(study: Study, *, drawn: bool = True) -> Section:
@@ -245,12 +200,12 @@ def conventions_section(study: Study, *, drawn: bool = True) -> Section:
         With the drawings of axes and signs in the section itself; else in its appendix, where the first page has a sketch.
     """
     text = (
-        AXES_ROWS,
-        f"{ANGLES} Angles are in degrees, derivatives by an angle per radian.",
-        CONTROLS if any(t.controls for t in study.tables) else "",
+        text_of("conventions.axes"),
+        text_of("conventions.in_degrees"),
+        text_of("conventions.controls") if any(t.controls for t in study.tables) else "",
         _reference_points(study),
         _lengths(study),
-        POTENTIAL,
+        text_of("conventions.potential"),
     )
     figures = axes_figures("axes")
     more = (Section("axes-drawn", "Axes and signs, drawn", figures=figures, appendix=True),)
@@ -271,7 +226,12 @@ def published_conventions(own: tuple[str, ...]) -> Section:
     own : tuple of str
         What holds for this publication alone.
     """
-    return Section("conventions", TITLE, (AXES_ROWS, ANGLES, *own), figures=axes_figures("axes", controls=False))
+    return Section(
+        "conventions",
+        TITLE,
+        (text_of("conventions.axes"), text_of("conventions.angles"), *own),
+        figures=axes_figures("axes", controls=False),
+    )
 
 
 def _reference_points(study: Study) -> str:
@@ -281,8 +241,8 @@ def _reference_points(study: Study) -> str:
         at = f"({x:.5g}, {y:.5g}, {z:.5g}) m from {f.coefficients.datum}"
         places.setdefault(at, []).append(f.campaign)
     if len(places) == 1:
-        moved = "" if study.plan.reference_point is None else f" {MOVED}"
-        return f"Moments and velocities refer to the point {next(iter(places))}, in the axes above.{moved}"
+        which = "of_tables" if study.plan.reference_point is None else "of_study"
+        return text_of(f"conventions.point_{which}", at=next(iter(places)))
     each = "; ".join(f"{', '.join(dict.fromkeys(names))}: {at}" for at, names in places.items())
     return f"Moments and velocities refer to these points, in the axes above. {each}." if each else ""
 
@@ -292,7 +252,4 @@ def _lengths(study: Study) -> str:
     if not lengths:
         return ""
     named = " and ".join(lengths)
-    return (
-        f"Primes: Y' = Y / (1/2 rho U^2 L^2), N' = N / (1/2 rho U^2 L^3), r' = r L/U, with L = {named}. "
-        "Coefficients made with another length are rescaled before they are compared."
-    )
+    return text_of("conventions.lengths", named=named)

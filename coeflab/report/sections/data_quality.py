@@ -10,14 +10,10 @@ from coeflab.report.figures.palette import COLOURS
 from coeflab.report.figures.panel import tick_texts, ticks
 from coeflab.report.figures.svg import POINTS, settings, svg_text
 from coeflab.report.tables import data_quality as quality
+from coeflab.report.texts import texts_of
 from coeflab.study.study import Study
 from coeflab.tables.force_table import ForceTable
 
-TEXT = (
-    "A symmetric body has no side force at no angle. What a curve has there is misalignment, asymmetry of the model or an "
-    "offset of the balance; the last column gives the angle at which the recommended slope gives as much.",
-    "Repeats are usable points of one table at one setting. No fit can be better than their scatter.",
-)
 WIDTH, LEFT, RIGHT, TOP, STRIP = 340.0, 84.0, 14.0, 6.0, 34.0
 
 
@@ -37,7 +33,7 @@ def quality_sections(study: Study) -> tuple[Section, ...]:
         quality.counts(study.tables),
         quality.not_used(study.tables),
     )
-    text: tuple[str, ...] = TEXT
+    text: tuple[str, ...] = texts_of("data_quality.section")
     if not any(t.exclusions for t in study.tables):
         text = (*text, "No row and no cell is rejected or doubtful.")
     figures = tuple(f for i, t in enumerate(study.tables) if (f := settings_figure(t, f"settings-{i}")) is not None)

@@ -9,7 +9,7 @@ import numpy as np
 
 from coeflab.core.finding import Severity
 from coeflab.core.table import ABSENT, Table, number, percent, with_u95
-from coeflab.core.wording import listed
+from coeflab.core.wording import counted, listed
 from coeflab.law.added_mass import AddedMass
 from coeflab.law.coefficient import Coefficient
 from coeflab.law.symbols import CONTROLS, derivative, primed
@@ -24,6 +24,7 @@ from coeflab.report.sections.body import hull_figure
 from coeflab.report.sections.stability import no_index
 from coeflab.report.tables import nouns as noun_tables
 from coeflab.report.tables.uncertainty import shown_unit
+from coeflab.report.texts import table_of, text_of
 from coeflab.study.study import FromShape, Study
 from coeflab.vehicle.merge import Merged, estimates_of
 from coeflab.vehicle.parameter_file import ParameterFile
@@ -41,15 +42,6 @@ OFF = "thrust off at time zero"  # what a coast-down says of itself
 ROUNDING, FINEST = 1e-6, 1e-9
 LISTS = ("not in the estimates", "not stated", "drag without lift")  # of what is missing: what follows names it
 LEAST, TENTH, MOST_PARTS, LONGEST = 0.005, 0.1, 3, 160
-ESTIMATED = (
-    "Estimates from the shape alone by semi-empirical methods, U95 from the scatter that each source states and from the spread "
-    "between methods. A computation or a measurement replaces each: coeflab merge."
-)
-TOGETHER = "share of its variance that vanishes if this number alone is known. Numbers of one method are correlated: the shares exceed 100 % in all."
-SHARES = (
-    "Shares of the variance that would go if that one number were known, over draws of all of them. The largest is the number that "
-    "is worth the next computation or test. Estimates of one method go together, so that the shares may add up to more than one."
-)
 
 
 def main_spread(carried: Sequence[Carried]) -> tuple[Spread, Importance] | None:
@@ -88,12 +80,14 @@ def particulars_table(shape: FromShape, hull: AddedMass | None = None) -> Table:
         half = np.diag(hull.u95)
         rows += [("U95 of added mass", _three(half[:3]), "kg"), ("U95 of added inertia", _three(half[3:]), "kg m^2")]
     by = f"; added mass by {hull.method}" if hull is not None else ""
-    notes = (
-        f"points from the {datum}, FRD; inertia about {_three(shape.weighed.body.reference_point)} m{by}",
-        *shape.said,
-    )
-    return Table(
-        f"{shape.weighed.body.name}: particulars", ("", "value", "unit"), tuple(rows), notes, frozenset({0, 2})
+    return table_of(
+        "estimates.particulars_table",
+        rows,
+        shape.said,
+        name=shape.weighed.body.name,
+        datum=datum,
+        reference_point=_three(shape.weighed.body.reference_point),
+        by=by,
     )
 
 
@@ -148,7 +142,7 @@ def estimates_table(
     left = frozenset({0, 4, *((len(heads) - 1,) if parts is not None else ())})
     notes = [f"{rest} more; --wide shows all."] if few and rest else []
     if main is not None and sum(shares.values()) > 1.0:
-        notes.append(f"of {main[0].figure.name}: {TOGETHER}")
+        notes.append(text_of("estimates.together", of=main[0].figure.name))
     return Table(f"{parameters.name}: numbers and estimates", heads, rows, tuple(notes), left, ("made of",))
 
 
@@ -205,10 +199,6 @@ def interval_in_words(carried: Sequence[Carried], speed: float) -> str:
     return f"{s.figure.name} {value}{f' {unit}' if unit else ''} {so} (95 % {low} to {high}), estimate"
 
 
-def _many(count: int, noun: str) -> str:
-    return f"{count} {noun}{'s' * (count != 1)}"
-
-
 def _degrees(angle: float | str) -> str:
     return f"{np.degrees(float(angle)):.3g} deg"
 
@@ -260,8 +250,7 @@ def manoeuvre_table(moves: Sequence[Simulation], carried: Sequence[Carried]) -> 
         notes.append(
             f"{main[0].figure.name}: causes of its 95 %, as the share of the variance that a test would take off: {causes}."
         )
-    heads = ("", "quantity", "value", "unit", "95 %")
-    return Table("First manoeuvres", heads, tuple(rows), (*notes, *_held(moves)), frozenset({0, 1, 3}))
+    return table_of("estimates.manoeuvre_table", rows, (*notes, *_held(moves)))
 
 
 def sentence(study: Study) -> str:
@@ -315,17 +304,19 @@ def answer_of_shape(study: Study, *, drawn: bool = True) -> Answer:
     )
     if not drawn:
         return result
-    first = next(iter(study.manoeuvres), None)
-    left = (
-        track_figures(first.trajectory, "answer-track", first.vehicle.length, f", {_how(first)}")[0]
-        if first is not None
-        else None
-    )
+    left = _track(study.manoeuvres)
     of, mass = shape.weighed, shape.weighed.configuration.mass
     is_stated = mass is not None and "centre" not in of.assumed
     gravity = of.body.reference_point + mass.centre_of_gravity if mass is not None and is_stated else None
     outline = hull_figure(of.body, "answer-body", COLUMN, gravity)
     return replace(result, slope=left, forest=shares_figure(parameters, shape.carried, "answer-shares"), axes=outline)
+
+
+def _track(moves: Sequence[Simulation]) -> Figure | None:
+    """Of the first manoeuvre, where there is one."""
+    for first in moves:
+        return track_figures(first.trajectory, "answer-track", first.vehicle.length, f", {_how(first)}")[0]
+    return None
 
 
 def _missing(missing: Sequence[str]) -> str:
@@ -334,7 +325,7 @@ def _missing(missing: Sequence[str]) -> str:
         head, _, rest = missing[0].partition(": ")
         named = rest.partition("; ")[0].partition(", without")[0]
         return f"{head}: {named}" if head.startswith(LISTS) else head
-    return _many(len(missing), "thing") if missing else "nothing"
+    return counted(len(missing), "thing") if missing else "nothing"
 
 
 def _stability(index: Derived) -> str:
@@ -370,7 +361,11 @@ def estimates_sections(study: Study) -> tuple[Section, ...]:
         particulars_table(shape, parameters.added_mass),
         estimates_table(parameters, shape.carried, shape.estimates.shares),
     ]
-    text = (ESTIMATED, SHARES) if figure is not None else (ESTIMATED,)
+    text = (
+        (text_of("estimates.estimated"), text_of("estimates.shares"))
+        if figure is not None
+        else (text_of("estimates.estimated"),)
+    )
     notes = tuple(f"{n[:1].upper()}{n[1:]}." for n in shape.estimates.notes)
     missing = (
         Section("missing", "Missing", tuple(f"{m[:1].upper()}{m[1:]}." for m in shape.missing))
@@ -396,8 +391,7 @@ def _methods(shape: FromShape) -> Table:
             for c in shape.estimates.contributions
         )
     )
-    heads = ("part", "of", "method", "U95", "source")
-    return Table("Contributions", heads, rows, (), frozenset({0, 1, 2, 4}))
+    return table_of("estimates.methods", rows)
 
 
 def merged_table(made: Merged) -> Table:
@@ -417,8 +411,7 @@ def merged_table(made: Merged) -> Table:
             apart = f"{abs(r.after.value - r.before.value) / np.hypot(r.before.u95, r.after.u95):.2f}"
         rows.append((r.symbol, before, after if r.after else "left out", apart))
     left = ", ".join(c.symbol for c in made.estimates) or "none"
-    notes = (f"Still estimates: {left}.", "apart: difference over both U95; above 1 they disagree")
-    return Table(f"{made.parameters.name}: replaced", ("", "before", "now", "apart"), tuple(rows), notes)
+    return table_of("estimates.merged_table", rows, name=made.parameters.name, left=left)
 
 
 def _value(c: Coefficient | None) -> str:
@@ -441,18 +434,15 @@ def answer_of_merge(made: Merged, moves: Sequence[Simulation], carried: Sequence
         rows.append(AnswerRow(symbol, value, u95, status, source, (before.get(symbol),), anchor="coefficients"))
     given = sum(r.after is not None for r in made.replaced)
     turn = interval_in_words(carried, p.conditions.speed).removesuffix(", estimate")
-    words = f"{p.name}: {_many(given, 'number')} replaced, {_many(left, 'estimate')} left{f'; {turn}' if turn else ''}."
+    words = (
+        f"{p.name}: {counted(given, 'number')} replaced, {counted(left, 'estimate')} left{f'; {turn}' if turn else ''}."
+    )
     chips = (
-        Chip("Replaced", _many(given, "number"), Severity.PASS if given else Severity.WARN, "coefficients"),
+        Chip("Replaced", counted(given, "number"), Severity.PASS if given else Severity.WARN, "coefficients"),
         Chip("Estimates left", str(left), Severity.NOTE, "coefficients"),
         Chip("First manoeuvre", turn or "no interval", Severity.NOTE, "manoeuvres"),
     )
-    first = next(iter(moves), None)
-    left_figure = (
-        track_figures(first.trajectory, "answer-track", first.vehicle.length, f", {_how(first)}")[0]
-        if first is not None
-        else None
-    )
+    left_figure = _track(moves)
     right = forest_figure(rows, (BEFORE,), BEFORE) or forest_figure(rows, (BEFORE,), "")
     note = f"{BEFORE}: the value that was replaced, of the base. Made dimensionless with {p.scaling.length_name} = {p.scaling.length:.5g} m."
     return Answer(words[:LONGEST], (BEFORE,), "", tuple(rows), chips, left_figure, right, None, (note,))
@@ -462,7 +452,10 @@ def replaced_section(made: Merged, carried: Sequence[Carried]) -> Section:
     """What was replaced, which estimates remain, and what they contribute to the uncertainty of the turn."""
     figure = shares_figure(made.parameters, carried, "shares")
     main = main_spread(carried)
-    text = [ESTIMATED, *([f"{made.lengths[:1].upper()}{made.lengths[1:]}."] if made.lengths else [])]
+    text = [
+        text_of("estimates.estimated"),
+        *([f"{made.lengths[:1].upper()}{made.lengths[1:]}."] if made.lengths else []),
+    ]
     if main is not None:
         estimated = {c.symbol for c in made.estimates}
         own = [(symbol, v) for symbol, v in main[1].known if symbol in estimated]
@@ -474,6 +467,6 @@ def replaced_section(made: Merged, carried: Sequence[Carried]) -> Section:
             else "No estimate still in it contributes."
         )
         text.append(f"{words[:1].upper()}{words[1:]}. {which}")
-        text.append(SHARES)
+        text.append(text_of("estimates.shares"))
     return Section("coefficients", "Estimates and what replaced them", tuple(text),
                    (merged_table(made), estimates_table(made.parameters, carried)), (figure,) if figure else ())  # fmt: skip

@@ -9,12 +9,9 @@ from coeflab.formats import loss_tables
 from coeflab.formats.export import ASSUMED, LOSSLESS, Export, Kind, Loss, Refused
 from coeflab.law.symbols import COMPONENTS, MOTIONS
 from coeflab.report.document import Section
+from coeflab.report.texts import table_of, text_of, texts_of
 from coeflab.study.study import Study
 from coeflab.vehicle.inertia import against_computed
-
-EXPORTED = (
-    "Largest difference: forces and accelerations of the written file by the simulator's own equations against those of the parameter file.",
-)
 
 
 def export_sections(study: Study) -> tuple[Section, ...]:
@@ -32,7 +29,7 @@ def export_sections(study: Study) -> tuple[Section, ...]:
         if result.loss is not None
     )
     refused = tuple(f"Refused, and not written: {_sentence(r)}" for r in study.refused)
-    text = (*EXPORTED, *refused, *added_masses(study))
+    text = (*texts_of("exports.section"), *refused, *added_masses(study))
     return (Section("exports", "Exports", text, (summary(study),), subsections=each),)
 
 
@@ -57,21 +54,6 @@ def _sentence(refused: Refused) -> str:
     return f"{refused.parameters} for {refused.target}. Found {why.found}; expected {why.expected}."
 
 
-KINDS = {
-    Kind.NOT_HELD: "a term that the target's force law does not have",
-    Kind.MISSING: "a number that the target needs and the parameter file does not state",
-    Kind.REPLACED: "a number of the parameter file in whose place the target gets another",
-    Kind.MISMATCH: "a number that the target understands in another way",
-    Kind.LEFT_OUT: "a term with which the target would drive what the file damps, or damp what it drives",
-}
-
-
-ACCELERATIONS = {
-    "measured": "the file's acceleration derivatives; gaps are filled with computed added mass",
-    "computed": "computed added mass only",
-}
-
-
 def summary(study: Study) -> Table:
     """One row an export, those that were refused last."""
     rows = tuple(
@@ -79,7 +61,6 @@ def summary(study: Study) -> Table:
         for result in study.exports
     )
     rows += tuple((r.parameters, r.target, "refused", ABSENT, ABSENT, "none") for r in study.refused)
-    headers = ("parameter file", "target", "loss", "largest difference in %", "added mass", "files")
     lossy = [result.loss for result in study.exports if result.loss is not None]
     kinds = {x.kind for loss in lossy for x in loss.lost} | {Kind.NOT_HELD for loss in lossy if loss.not_held}
     notes = (
@@ -88,18 +69,16 @@ def summary(study: Study) -> Table:
             if any("accepted" in row[2] for row in rows)
             else ()
         ),
-        *(f"{kind}: {KINDS[kind]}." for kind in Kind if kind in kinds),
+        *(f"{kind}: {text_of(f'exports.kind_{kind.name.lower()}')}." for kind in Kind if kind in kinds),
         *(
-            f"added mass {used}: {ACCELERATIONS[used]}."
-            for used in ACCELERATIONS
+            f"added mass {used}: {text_of(f'exports.added_mass_{used}')}."
+            for used in ("measured", "computed")
             if any(row[4] == used for row in rows)
         ),
         *(["files: each row also has one loss report, .loss.txt."] if lossy else []),
-        "Largest difference in %: export minus parameter file, of any force or acceleration, divided by its largest value. A "
-        "component below 1 % of the largest force or moment is too small to judge. "
-        f"States tried: the ranges of the campaigns; from -{ASSUMED:g} to {ASSUMED:g} (primed) for a motion that no campaign varies.",
+        text_of("exports.largest", assumed=ASSUMED),
     )
-    return Table("Exports of this study", headers, rows, notes, frozenset({0, 1, 2, 4, 5}))
+    return table_of("exports.summary", rows, notes)
 
 
 def _accelerations(made: Export) -> str:

@@ -8,14 +8,9 @@ from coeflab.motion.manoeuvre import Simulation
 from coeflab.report.document import Section
 from coeflab.report.figures.motion import motion_figures
 from coeflab.report.tables.motion import figure_table
+from coeflab.report.texts import text_of, texts_of
 from coeflab.study.study import Study
 from coeflab.vehicle.parameter_file import ParameterFile
-
-SIMULATED = ("Extrapolated: the motion leaves the range of the data.",)
-WITHOUT_U95 = (
-    "No U95: each manoeuvre is computed once, with the values of its file; coeflab uncertainty FILE gives intervals."
-)
-
 
 SHOWN = ("track", "profile", "angle")  # of the drawings of a motion, in the core
 
@@ -26,7 +21,14 @@ def manoeuvre_sections(study: Study) -> tuple[Section, ...]:
         return ()
     files = {p.name: p for p in study.parameter_files.values()}
     each = tuple(_manoeuvre(m, f"manoeuvre-{i}", files.get(m.vehicle.name)) for i, m in enumerate(study.manoeuvres))
-    return (Section("manoeuvres", "Simulated manoeuvres", (*SIMULATED, without_u95(study)), subsections=each),)
+    return (
+        Section(
+            "manoeuvres",
+            "Simulated manoeuvres",
+            (*texts_of("manoeuvres.section"), without_u95(study)),
+            subsections=each,
+        ),
+    )
 
 
 def without_u95(study: Study) -> str:
@@ -38,7 +40,7 @@ def without_u95(study: Study) -> str:
         members = ", ".join(f"{name} {count}" for name, count in drawn.items())
         return f"The 95 % ranges on the first page are of draws of the coefficients: {members}.{rest}"
     if any(f.value is not None for result in study.manoeuvres for f in result.figures):
-        return WITHOUT_U95
+        return text_of("manoeuvres.without_u95")
     every = listed(list(dict.fromkeys(result.manoeuvre.name.replace("_", " ") for result in study.manoeuvres)))
     return f"{every[:1].upper()}{every[1:]} could not be computed, so there is no U95."
 

@@ -22,16 +22,11 @@ from coeflab.report.figures.panel import BOTTOM, drawing, legend, limits, panel
 from coeflab.report.figures.series import STYLES, curve, numbers, points, tagged
 from coeflab.report.figures.svg import settings, svg_text
 from coeflab.report.tables import oscillations as tables
+from coeflab.report.texts import texts_of
 from coeflab.study.study import Study
 
 TALL = 252.0
 UNDER_LEGEND = TALL - 4.0 - 3 * 12.2 - 8.0
-TEXT = (
-    "Each run is regressed on its mean and harmonics. The part in phase with the velocity is damping, that with the acceleration "
-    "added mass, both after the filter, the model's inertia and its restoring moments were taken out as declared.",
-    "At zero amplitude the slope is that of the law: 8/(3 pi) of an x|x| term and 3/4 of an x^3 term fall away. Both forms are "
-    "tried; the value is their mean by likelihood and U95 holds their difference.",
-)
 
 
 def oscillation_sections(study: Study, fit: FitResult, anchors: Callable[[str], str]) -> tuple[Section, ...]:
@@ -48,7 +43,9 @@ def oscillation_sections(study: Study, fit: FitResult, anchors: Callable[[str], 
     if not fit.oscillations:
         return ()
     shown = tuple(t for t in (tables.explained(fit, study.fits), tables.over_frequency(fit)) if t.rows)
-    first = Section(anchors("amplitude and frequency"), "Amplitude and frequency", TEXT, shown)
+    first = Section(
+        anchors("amplitude and frequency"), "Amplitude and frequency", texts_of("oscillations.section"), shown
+    )
     each = []
     for o, table in zip(fit.oscillations, tables.runs(fit), strict=True):
         place = anchors(o.symbol)

@@ -9,21 +9,20 @@ from coeflab.report.figures.sweep import sweep_figure
 from coeflab.report.sections.campaign import anchor, filled
 from coeflab.report.tables import results as tables
 from coeflab.report.tables.traceability import traceability
+from coeflab.report.texts import texts_of
 from coeflab.report.workers import begun
 from coeflab.study.study import Study
 from coeflab.study.symmetry import zeros
-
-FILES = (
-    "Every input with its sha256. Rows are those of the table as the file names them; what a fit leaves aside of itself is named with "
-    "its derivative. Converted: how the file's axes, signs and point became those of this report.",
-)
-CURVES = ("Points, curve and what the curve leaves over, derivative by derivative; crosses are left out.",)
 
 
 def review_sections(study: Study) -> tuple[Section, ...]:
     """Two sections; of a study without tables none."""
     files = filled(traceability(study))
-    out = [Section("traceability", "From files to points", FILES, files, appendix=True)] if files else []
+    out = (
+        [Section("traceability", "From files to points", texts_of("review.files"), files, appendix=True)]
+        if files
+        else []
+    )
     out += [Section("all-checks", "All checks", tables=filled(tables.checks(study.checks)), appendix=True)] * bool(
         study.checks
     )
@@ -40,6 +39,13 @@ def review_sections(study: Study) -> tuple[Section, ...]:
         curves = tuple(finished())
     if curves:
         out.append(
-            Section("every-curve", "Every derivative's curve", CURVES, figures=curves, appendix=True, plates=True)
+            Section(
+                "every-curve",
+                "Every derivative's curve",
+                texts_of("review.curves"),
+                figures=curves,
+                appendix=True,
+                plates=True,
+            )
         )
     return tuple(out)

@@ -9,12 +9,13 @@ from numpy.typing import NDArray
 
 from coeflab.core.errors import CoeflabError
 from coeflab.core.table import ABSENT, Table, number
-from coeflab.core.wording import grouped, in_sentences, listed
+from coeflab.core.wording import collected, grouped, in_sentences, listed
 from coeflab.law.symbols import primed
 from coeflab.motion.steady_state import DRAWN, RootLocus, root_locus
 from coeflab.report.document import Figure, Section
 from coeflab.report.figures.root_locus import IN_PLANE, root_locus_figure
 from coeflab.report.tables.added_mass import mass_table
+from coeflab.report.texts import table_of, text_of, texts_of
 from coeflab.study.study import Study
 from coeflab.vehicle.criteria import REVERSAL, TURNING, criteria
 from coeflab.vehicle.parameter_file import ParameterFile
@@ -22,19 +23,6 @@ from coeflab.vehicle.reference import Relation
 from coeflab.vehicle.stability import FAST, INDICES, NO_CRITERION, SEED, SIGN_OPEN, Derived, by_mass, sense, stability
 
 RUDDER = float(np.radians(15.0))  # at which the diameter of the linear turn is stated
-TEXT = (
-    "G_h = 1 - Nv' (Yr' - m') / [Yv' (Nr' - xG' m')] and G_v = 1 - Mw' (Zq' + m') / [Zw' (Mq' - xG' m')], controls fixed, positive: stable. G_v "
-    "and roots of the vertical plane without BG hold at high speed: the restoring moment is left out.",
-    "U95 comes from that of the derivatives; errors of mass and centre of gravity are not in it. A root with a real part above zero grows.",
-)
-
-
-TURNING_TEXT = (
-    "r'/dr = (Nv' Ydr' - Yv' Ndr') / [Yv' (Nr' - xG' m') - Nv' (Yr' - m')] is the turning ability of the rudder."
-)
-
-
-REVERSAL_TEXT = "U_c is the critical speed of the stern planes: slower, planes to dive make it rise. U_c^2 = Zds' BG W / [1/2 rho L^3 (Mw' Zds' - Zw' Mds')]."
 
 NOT_KNOWN = "no value: no added mass"
 NO_ADDED_MASS = (
@@ -165,9 +153,10 @@ def stability_sections(study: Study) -> tuple[Section, ...]:
             "critical speed m/s",
             "95 % limits m/s",
         )
-        speeds: dict[str, list[str]] = {}
-        for name in dict.fromkeys(row[0] for row in roots):
-            speeds.setdefault(f"{number(study.parameter_files[name].conditions.speed, 3)} m/s", []).append(name)
+        speeds = collected(
+            (f"{number(study.parameter_files[name].conditions.speed, 3)} m/s", name)
+            for name in dict.fromkeys(row[0] for row in roots)
+        )
         at = (
             f"Roots at {next(iter(speeds))}, the speed of the parameter file"
             if len(speeds) == 1
@@ -182,10 +171,19 @@ def stability_sections(study: Study) -> tuple[Section, ...]:
     used = (*((made_of,) if made_of.rows else ()), *mass_table(study))
     mass = Section("mass-used", "What the indices are computed from", tables=used, appendix=True)
     given = {row[1] for row in rows}
-    also = [text for name, text in ((TURNING, TURNING_TEXT), (REVERSAL, REVERSAL_TEXT)) if name in given]
+    also = [
+        text
+        for name, text in ((TURNING, text_of("stability.turning")), (REVERSAL, text_of("stability.reversal")))
+        if name in given
+    ]
     return (
         Section(
-            "stability", "Stability", (TEXT[0], *also, *TEXT[1:], *refused), tuple(tables), tuple(figures), (mass,)
+            "stability",
+            "Stability",
+            (texts_of("stability.section")[0], *also, *texts_of("stability.section")[1:], *refused),
+            tuple(tables),
+            tuple(figures),
+            (mass,),
         ),
     )
 
@@ -273,12 +271,7 @@ def _made_of(study: Study, given: set[tuple[str, str]]) -> Table:
             centre = p.mass.mass_moment_prime / p.mass.mass_prime
             values = (*derivatives, f"m' = {number(p.mass.mass_prime, 5)}", f"xG' = {number(centre, 5)}")
             rows.append((p.name, index, ", ".join(values), "; ".join(sources)))
-    headers = ("parameter file", "index", "computed from", "derivatives from")
-    notes = (
-        "m' and xG' are those of the appendix (--full), \"Mass and inertia used\". The indices above have four digits, so that they can be "
-        "recomputed from these numbers.",
-    )
-    return Table("What the indices are computed from", headers, tuple(rows), notes, frozenset(range(4)))
+    return table_of("stability.made_of", rows)
 
 
 def _printed(study: Study, name: str, index: str) -> tuple[str, str]:

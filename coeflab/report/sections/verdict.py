@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from coeflab.core.finding import Severity
-from coeflab.core.wording import in_sentences, listed
+from coeflab.core.wording import collected, counted, in_sentences, listed
 from coeflab.law.coefficient import Coefficient, Status
 from coeflab.law.symbols import derivative, primed, read_factors
 from coeflab.report.acceptance import on_predictions
@@ -14,6 +14,7 @@ from coeflab.report.figures.first_page import share_text
 from coeflab.report.sections.estimates import verdict_of_shape
 from coeflab.report.sections.stability import in_words
 from coeflab.report.tables import comparisons
+from coeflab.report.texts import text_of
 from coeflab.study.study import Study
 from coeflab.study.towed import towed
 from coeflab.study.validation import WIDE, by_measured_number, printed_indices, validations
@@ -22,25 +23,13 @@ from coeflab.vehicle.reference import Comparison, Relation
 SEVERAL = 3  # campaigns that a sentence names; of more it says how many, and the table has them
 
 
-def _counted(n: int, one: str, several: str = "") -> str:
-    return f"{n} {one if n == 1 else several or f'{one}s'}"
-
-
 def _named(c: Comparison) -> str:
     return f"{primed(c.coefficient.symbol)} of {c.coefficient.campaign}"
 
 
-SAME_DATA = "The data are the authors' own: agreement says that our evaluation reproduces theirs, not that their measurements are right."
-RECOMPUTED = "from its own derivatives, within the rounding of the printed numbers. The appendix lists them (--full)."
-NOT_A_FAILURE = (
-    'This does not fail the study: U_V leaves out the error of the turbulence model, and the errors listed under "Not in U95" below the tables of both '
-    "campaigns."
-)
-
-
 def _agree(good: int, count: int, one: str) -> str:
     """How many agree, for example ``2 of 3 coefficients agree``."""
-    return f"{good} of {_counted(count, one)} {'agrees' if good == 1 else 'agree'}"
+    return f"{good} of {counted(count, one)} {'agrees' if good == 1 else 'agree'}"
 
 
 def _re_analyses(study: Study) -> list[str]:
@@ -58,7 +47,7 @@ def _re_analyses(study: Study) -> list[str]:
         out.append(in_sentences(f"Weak, as {comparisons.WEAK}: ", wide, join=listed))
     if len(ours) > len(judged):
         out.append(in_sentences("No verdict without U95: ", [_named(c) for c in ours if c.passed is None], join=listed))
-    return [*out, SAME_DATA]
+    return [*out, text_of("verdict.same_data")]
 
 
 def _predictions(study: Study) -> list[str]:
@@ -67,13 +56,10 @@ def _predictions(study: Study) -> list[str]:
     counted = [all(v.within for v in one) for one in by_measured_number(found)]
     out = []
     if counted:
-        out.append(
-            f"{_agree(sum(counted), len(counted), 'coefficient')} with the test of the same body, within the validation uncertainty U_V. Only predictions "
-            "are independent evidence."
-        )
+        out.append(text_of("verdict.predictions", counted=_agree(sum(counted), len(counted), "coefficient")))
     out += on_predictions(study)
     if missed := [f"{primed(v.symbol)} of {v.simulation} against {v.experiment}" for v in found if v.within is False]:
-        out.append(f"{in_sentences('Beyond U_V: ', missed, join=listed)} {NOT_A_FAILURE}")
+        out.append(" ".join((in_sentences("Beyond U_V: ", missed, join=listed), text_of("verdict.no_failure"))))
     return [*out, *_beyond_without_verdict(study, also=bool(missed))]
 
 
@@ -83,7 +69,7 @@ def _recomputed(study: Study) -> list[str]:
     if not found:
         return []
     indices, follow = ("index", "follows") if len(found) == 1 else ("indices", "follow")
-    return [f"{sum(found)} of {len(found)} stability {indices} of the test report {follow} {RECOMPUTED}"]
+    return [text_of("verdict.recomputed", good=sum(found), count=len(found), indices=indices, follow=follow)]
 
 
 def _beyond_without_verdict(study: Study, *, also: bool) -> list[str]:
@@ -108,16 +94,19 @@ def _beyond_without_verdict(study: Study, *, also: bool) -> list[str]:
 def _no_verdict_on(study: Study, others: Sequence[Comparison]) -> str:
     """Columns without a verdict by reason: another body, or another method on the same one."""
     bodies = {r.name: r.body for r in study.references}
-    by: dict[str, list[str]] = {}
-    for c in others:
-        names = by.setdefault("body" if bodies.get(c.reference) != c.coefficient.body else "method", [])
-        if c.reference not in names:
-            names.append(c.reference)
-    each = [
-        f"No verdict on {listed(names)}: {'its' if len(names) == 1 else 'their'} {what} is not that of our data, so a difference proves no error."
-        for what, names in by.items()
-    ]
-    return " ".join(each)
+    by = collected(
+        ("body" if bodies.get(name) != body else "method", name)
+        for name, body in dict.fromkeys((c.reference, c.coefficient.body) for c in others)
+    )
+    return " ".join(
+        text_of(
+            "verdict.others",
+            names=listed(list(dict.fromkeys(n))),
+            its="its" if len(set(n)) == 1 else "their",
+            what=what,
+        )
+        for what, n in by.items()
+    )
 
 
 def _outcome(study: Study) -> tuple[str, ...]:
@@ -125,14 +114,14 @@ def _outcome(study: Study) -> tuple[str, ...]:
     failed = [c for c in study.checks if c.severity is Severity.FAIL]
     beyond = [c for c in study.comparisons if c.passed is False]
     judged = [c for c in study.comparisons if c.passed is not None]
-    what = [f"{len(beyond)} of {_counted(len(judged), 're-analysis', 're-analyses')}"] if beyond else []
-    what += [f"{len(failed)} of {_counted(len(study.checks), 'check')}"] if failed else []
-    refused = f"{_counted(len(study.refused), 'export')} {'was' if len(study.refused) == 1 else 'were'} refused"
+    what = [f"{len(beyond)} of {counted(len(judged), 're-analysis', 're-analyses')}"] if beyond else []
+    what += [f"{len(failed)} of {counted(len(study.checks), 'check')}"] if failed else []
+    refused = f"{counted(len(study.refused), 'export')} {'was' if len(study.refused) == 1 else 'were'} refused"
     if study.failed:
         each = [f"{listed(what)} failed"] if what else []
         return (f"The study fails: {'; '.join([*each, *([refused] if study.refused else [])])}.",)
     warned = sum(c.severity is Severity.WARN for c in study.checks)
-    warnings = f" {warned} of {_counted(len(study.checks), 'check')} gave a warning." if warned else ""
+    warnings = f" {warned} of {counted(len(study.checks), 'check')} gave a warning." if warned else ""
     if judged and study.checks:
         return (f"The study passes: no re-analysis and no check failed.{warnings}",)
     if study.checks or judged:
@@ -165,16 +154,16 @@ def _harvest(study: Study) -> str:
     campaigns = list(dict.fromkeys(t.campaign for t in study.tables))
     if not campaigns:
         return "The study holds no tables."
-    rows = _counted(sum(len(t) for t in study.tables if not t.by_symmetry), "row")
+    rows = counted(sum(len(t) for t in study.tables if not t.by_symmetry), "row")
     named = f": {listed(campaigns)}" * (len(campaigns) <= SEVERAL)
-    source = f"{rows} of {_counted(len(campaigns), 'campaign')}{named}."
+    source = f"{rows} of {counted(len(campaigns), 'campaign')}{named}."
     models = sum(len(f.models) for f in study.fits)
     if not found and models:
-        return f"We found {_counted(models, 'fitted model')}, none with coefficients that have a SNAME symbol, from {source}"
+        return f"We found {counted(models, 'fitted model')}, none with coefficients that have a SNAME symbol, from {source}"
     if not found:
         return f"No coefficient could be determined from {source}"
     uncertain = "each with U95" if bounded == len(found) else f"{bounded} of them with U95"
-    each = f"We found {_counted(len(found), 'coefficient')} ({_by_kind(found)}), {uncertain}, from {source}"
+    each = f"We found {counted(len(found), 'coefficient')} ({_by_kind(found)}), {uncertain}, from {source}"
     alone = sum(c.u95 is not None and c.parts.model_form is None and c.parts.input is None for c in found)
     each += f" U95 of {alone} is scatter alone." * bool(alone)
     copies = len(every) - len(found)
@@ -205,10 +194,7 @@ def _without_value(study: Study) -> list[str]:
     absent = [c for c in study.coefficients if c.value is None]
     out = []
     for status in dict.fromkeys(c.status for c in absent):
-        places: dict[str, list[str]] = {}
-        for c in absent:
-            if c.status is status:
-                places.setdefault(c.campaign or c.body, []).append(c.symbol)
+        places = collected((c.campaign or c.body, c.symbol) for c in absent if c.status is status)
         is_untabled = status is Status.NO_TABLE
         names = [
             f"{listed([primed(s) for s in symbols])} of {place}{_not_varied(symbols) if is_untabled else ''}"
@@ -237,10 +223,11 @@ def _next(study: Study) -> list[str]:
 
 def _wide(study: Study) -> list[str]:
     """Wanted values with a wide interval, and how to find the runs that narrow it."""
-    wide: dict[str, list[str]] = {}
-    for c in study.coefficients:
-        if c.symbol in study.plan.wanted and c.value and c.u95 and c.u95 > WIDE * abs(c.value):
-            wide.setdefault(c.campaign or c.body, []).append(primed(c.symbol))
+    wide = collected(
+        (c.campaign or c.body, primed(c.symbol))
+        for c in study.coefficients
+        if c.symbol in study.plan.wanted and c.value and c.u95 and c.u95 > WIDE * abs(c.value)
+    )
     if not wide:
         return []
     each = [f"{listed(symbols)} of {place}" for place, symbols in wide.items()]

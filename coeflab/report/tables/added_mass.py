@@ -13,7 +13,9 @@ from coeflab.bodies.mesh.mesh import TriangleMesh
 from coeflab.bodies.outlining import fins_along
 from coeflab.core.provenance import work
 from coeflab.core.table import ABSENT, Table, coefficient, number
+from coeflab.core.wording import collected
 from coeflab.law.symbols import COMPONENTS, MOTIONS
+from coeflab.report.texts import table_of, text_of
 from coeflab.vehicle.inertia import water_inertia
 
 if TYPE_CHECKING:
@@ -36,9 +38,7 @@ def particulars(body: Body) -> Table:
         at = None if c.centre_of_buoyancy is None else np.round(c.centre_of_buoyancy, 4) + 0.0
         centre = [ABSENT] * 3 if at is None else [f"{x:.4f}" for x in at]
         rows.append((c.name, number(c.volume, 6), *centre, number(c.wetted_surface, 5), c.title))
-    headers = ("particulars", "volume m^3", "xB m", "yB m", "zB m", "wetted surface m^2", "what")
-    notes = (f"B: centre of buoyancy, FRD, from: {body.datum}",)
-    return Table(f"{body.name}: {body.title}", headers, tuple(rows), notes, frozenset({0, 6}))
+    return table_of("added_mass.particulars", rows, name=body.name, title=body.title, datum=body.datum)
 
 
 def displaced(body: Body, density: float) -> Table:
@@ -67,10 +67,7 @@ def displaced(body: Body, density: float) -> Table:
 def sound(mesh: TriangleMesh) -> str:
     """What the gates of a mesh let through, and its size."""
     size = " x ".join(f"{v:.5g}" for v in mesh.extents)
-    return (
-        f"the mesh of {len(mesh.faces)} faces is closed, wound outward, without faces of no area or faces twice; "
-        f"{size} m along x forward, y starboard, z down: look whether unit and axes are right"
-    )
+    return text_of("added_mass.sound", faces=len(mesh.faces), size=size)
 
 
 def seen(body: Body) -> list[str]:
@@ -114,8 +111,7 @@ def outline_table(outline: Outline) -> Table:
         *(("propeller: expanded area of its blades, centre of its disc",) if outline.propellers else ()),
         *(f"left out: {line}" for line in outline.left_out),
     ]
-    headers = ("part", "seen as", "m^2", "m", "x m", "turned by")
-    return Table("What estimates see", headers, tuple(rows), tuple(notes), frozenset({0, 1, 3, 5}))
+    return table_of("added_mass.outline_table", rows, notes)
 
 
 def derivatives(found: Triangulation) -> Table:
@@ -135,10 +131,7 @@ def derivatives(found: Triangulation) -> Table:
             )
         )
     headers = ("SI", *(cell for r in found.results for cell in (_marked(r, found), "/m")), "spread")
-    note = (
-        f"/m: added mass over the displaced mass, {mass:.5g} kg at {found.density:g} kg/m^3; spread: range over the methods "
-        "that speak of the entry, over the recommended one; off the diagonal over the root of both diagonal entries"
-    )
+    note = text_of("added_mass.spread", mass=mass, density=found.density)
     return Table("Acceleration derivatives", headers, tuple(rows), (note, *remarks(found)))
 
 
@@ -202,9 +195,7 @@ def _marked(result: AddedMass, found: Triangulation) -> str:
 
 def _verdicts(found: Triangulation) -> list[str]:
     """Each verdict once, and the methods that it is on unless it is on all."""
-    by: dict[str, list[str]] = {}
-    for r in found.results:
-        by.setdefault(r.verdict, []).append(r.method)
+    by = collected((r.verdict, r.method) for r in found.results)
     return [f"{'every matrix' if len(by) == 1 else ', '.join(methods)}: {verdict}" for verdict, methods in by.items()]
 
 
@@ -213,18 +204,14 @@ def symmetry(found: Triangulation) -> Table:
     zero, left = found.vanishing()
     rows = tuple((m, f"{v:.1e}") for m, v in left.items()) if np.any(zero) else ()
     planes = ", ".join(found.mirror_planes) or "none"
-    notes = (
-        f"planes of symmetry, as volume moments up to the third degree tell: {planes}; vanish about the reference point: {', '.join(found.vanishing_symbols())}",
-        "largest: over the root of the two diagonal entries; zero but for rounding and the mesh",
-    )
-    return Table("Entries that symmetry makes vanish", ("method", "largest"), rows, notes)
+    return table_of("added_mass.symmetry", rows, planes=planes, names=", ".join(found.vanishing_symbols()))
 
 
 def primes(found: Triangulation) -> Table:
     """Primed acceleration derivatives beside measured ones; no rows where the body names no length."""
     by = found.body.scaling
     if by is None:
-        return Table("Primes", (), ())
+        return table_of("added_mass.primes_2", ())
     rows, notes = [], [f"primed by {by} and 1/2 rho" + ("" if found.none_recommended else f"; {MARK} recommended")]
     measured = {m.symbol: m for m in found.body.measured}
     for symbol in dict.fromkeys((*SHOWN, *measured)):
@@ -269,19 +256,11 @@ MASS = ("m", "m'")
 
 def mass_table(study: Study) -> tuple[Table, ...]:
     """Value, unit, source and stated uncertainty of every parameter file that has a mass, those of one body together; none where none has."""
-    names: dict[tuple[tuple[str, ...], ...], list[str]] = {}
-    for p in study.parameter_files.values():
-        names.setdefault(_rows(p, *_source(study, p)), []).append(p.name)
+    names = collected((_rows(p, *_source(study, p)), p.name) for p in study.parameter_files.values())
     rows = [(", ".join(those), *row) for found, those in names.items() for row in found]
     if not rows:
         return ()
-    headers = ("parameter file", "quantity", "value", "unit", "source", "stated uncertainty")
-    notes = (
-        "m' = m / (1/2 rho L^3); xG' = x_G / L, from the reference point, forward; Iy = Iz about the reference point",
-        "No uncertainty of mass and inertia is in U95 of indices, roots or manoeuvres: it is not assessed.",
-        *_added(study),
-    )
-    return (Table("Mass and inertia used", headers, tuple(rows), notes, frozenset({0, 1, 3, 4, 5})),)
+    return (table_of("added_mass.mass_table", rows, _added(study)),)
 
 
 def _added(study: Study) -> tuple[str, ...]:

@@ -15,6 +15,7 @@ from coeflab.law.coefficient import SAID, Status
 from coeflab.law.symbols import ANGLE_NAMES, primed
 from coeflab.report.tables import nouns as noun_tables
 from coeflab.report.tables.results import NO_DATA
+from coeflab.report.texts import table_of
 from coeflab.study.validation import WIDE
 from coeflab.vehicle.reference import Relation
 
@@ -54,18 +55,15 @@ def verdicts(study: Study) -> Table:
         for c in study.comparisons
         if c.relation is Relation.RE_ANALYSIS
     ]
-    headers = ("", "campaign", "ours", "U95", "published", "|difference|", "combined", "verdict", "reference")
-    notes = (
-        f"{Relation.RE_ANALYSIS}: {Relation.RE_ANALYSIS.meaning}.",
-        *([f"weak pass: {WEAK} (root sum of squares)."] if any(row[-2] == "weak pass" for row in rows) else []),
-        "combined: our U95 and the uncertainty that the source states, shown beside it; the verdict does not use it.",
-    )
-    return Table(
-        "Re-analyses: our fits against the authors' own evaluation",
-        headers,
-        tuple(rows),
-        notes,
-        frozenset({0, 1, 7, 8}),
+    return table_of(
+        "comparisons.verdicts",
+        rows,
+        (
+            *([f"weak pass: {WEAK} (root sum of squares)."] if any(row[-2] == "weak pass" for row in rows) else []),
+            "combined: our U95 and the uncertainty that the source states, shown beside it; the verdict does not use it.",
+        ),
+        RE_ANALYSIS=Relation.RE_ANALYSIS,
+        meaning=Relation.RE_ANALYSIS.meaning,
     )
 
 
@@ -145,7 +143,6 @@ def campaigns(study: Study) -> Table:
         reynolds = _span(1e-6 * np.concatenate(known)) if known else ABSENT
         source = f"{kinds}, virtual tank" if name in towed_ones else kinds
         rows.append((name, bodies, source, varied, _span(speed), reynolds, ", ".join(files) or ABSENT))
-    headers = ("campaign", "body", "source", "varied", "speed m/s", "Re in millions", "parameter file")
     notes = []
     for body in dict.fromkeys(t.body for t in study.tables):
         configuration = study.body.configuration(body) if study.body else None
@@ -168,8 +165,7 @@ def campaigns(study: Study) -> Table:
         if towed_ones and name not in towed_ones
     ]
     notes += [f"Parameter files and manoeuvres are for {listed(list(at))}."] if at else []
-    title = "What was tested and computed"
-    return Table(title, headers, tuple(rows) if len(rows) > 1 else (), tuple(notes), frozenset({0, 1, 2, 3, 6}))
+    return table_of("comparisons.campaigns", rows if len(rows) > 1 else (), tuple(notes))
 
 
 def _varied(tables: Sequence[ForceTable]) -> str:
@@ -228,6 +224,5 @@ def differences(study: Study) -> Table:
         for c in study.comparisons
         if c.relation is not Relation.RE_ANALYSIS and c.difference is not None
     )
-    headers = ("", "column", "read with", "relation", "published", "|difference|", "in U95")
     notes = tuple(f"{r}: {r.meaning}." for r in (Relation.CROSS_BODY, Relation.QUOTED))
-    return Table("Distance of the published columns", headers, rows, notes, frozenset({0, 1, 2, 3}))
+    return table_of("comparisons.differences", rows, notes)

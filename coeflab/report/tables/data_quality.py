@@ -11,8 +11,10 @@ from scipy.spatial import cKDTree
 
 from coeflab.core.finding import Severity
 from coeflab.core.table import ABSENT, Table, coefficient, number, with_u95
+from coeflab.core.wording import collected
 from coeflab.fits.statistics.diagnostics import replicate_groups
 from coeflab.law.symbols import LINEAR, MOTIONS, PORT_STARBOARD
+from coeflab.report.texts import table_of
 from coeflab.tables.force_table import AT_REST
 
 if TYPE_CHECKING:
@@ -53,8 +55,7 @@ def coverage(tables: Sequence[ForceTable]) -> Table:
             moved = int(np.count_nonzero(np.abs(x) > SAME_SETTING))
             ends = (number(float(levels[0]), 4), number(float(levels[-1]), 4), number(float(gap), 3))
             rows.append((t.name, name, str(len(levels)), str(moved), *ends, ABSENT if name.startswith("U") else side))
-    headers = ("table", "setting", "levels", "rows off zero", "from", "to", "largest gap", "sides")
-    return Table("Settings", headers, tuple(rows), (), frozenset({0, 1, 7}), ("rows off zero",))
+    return table_of("data_quality.coverage", rows)
 
 
 def convergence(tables: Sequence[ForceTable]) -> Table:
@@ -71,9 +72,8 @@ def convergence(tables: Sequence[ForceTable]) -> Table:
             worst = int(np.argmax(se))
             shares = (f"{100.0 * v / largest:.2g} %" if largest else ABSENT for v in (np.median(se), se[worst]))
             rows.append((t.name, f"{component}'", str(len(selected)), *shares, t.labels[selected[worst]]))
-    headers = ("table", "force", "rows", "median, of largest", "worst, of largest", "worst row")
     note = "Standard errors as the tables state them, over the largest force; they hold no grid or model error."
-    return Table("Convergence of readings", headers, tuple(rows), (note,), frozenset({0, 1, 5}))
+    return table_of("data_quality.convergence", rows, (note,))
 
 
 def mirror_pairs(table: ForceTable) -> NDArray[np.intp]:
@@ -112,9 +112,8 @@ def symmetry(tables: Sequence[ForceTable]) -> Table:
             shares = (f"{100.0 * v / largest:.2g} %" if largest else ABSENT for v in (size, abs(apart[worst])))
             where = " and ".join(t.labels[i] for i in both[worst])
             rows.append((t.name, f"{component}'", str(len(both)), *shares, where))
-    headers = ("table", "force", "pairs", "rms difference", "worst", "worst pair")
     note = "Of the largest force. Rows are a pair within 0.34 deg; both parts of a setting error are in the difference."
-    return Table("Symmetry of mirrored runs", headers, tuple(rows), (note,), frozenset({0, 1, 5}))
+    return table_of("data_quality.symmetry", rows, (note,))
 
 
 def at_rest(fits: Sequence[FitResult]) -> Table:
@@ -128,9 +127,8 @@ def at_rest(fits: Sequence[FitResult]) -> Table:
         at_zero = ABSENT if not measured else coefficient(float(np.mean(measured)))
         share = f"{100.0 * abs(value) / largest:.1f} %" if largest > 0.0 else ABSENT
         rows.append((s.campaign, f"{s.component}'", s.variable + "'", *with_u95(value, half), at_zero, share, angle))
-    headers = ("campaign", "force", "over", "of the curve", "U95", "measured", "of largest", "as angle deg")
     note = "of the curve: the recommended curve at no angle; of largest: its size over the largest force of the sweep."
-    return Table("Forces at rest", headers, tuple(rows), (note,), frozenset({0, 1, 2}))
+    return table_of("data_quality.at_rest", rows, (note,))
 
 
 def tares(tables: Sequence[ForceTable]) -> Table:
@@ -149,8 +147,7 @@ def tares(tables: Sequence[ForceTable]) -> Table:
             spread = f"{100.0 * float(np.ptp(y[selected])) / largest:.2g} %" if largest else ABSENT
             ends = (coefficient(float(y[selected[i]])) for i in (0, -1))
             rows.append((t.name, f"{component}'", str(len(selected)), *ends, spread))
-    headers = ("table", "force", "readings", "first", "last", "range, of largest")
-    return Table("Tares: readings ahead at no angle", headers, tuple(rows), (), frozenset({0, 1}))
+    return table_of("data_quality.tares", rows)
 
 
 def repeats(tables: Sequence[ForceTable]) -> Table:
@@ -171,8 +168,7 @@ def repeats(tables: Sequence[ForceTable]) -> Table:
             largest = float(np.max(np.abs(y)))
             share = f"{100.0 * pooled / largest:.2g} %" if largest else ABSENT
             rows.append((t.name, f"{component}'", str(len(groups)), str(freedom), number(float(pooled), 3), share))
-    headers = ("table", "force", "settings repeated", "degrees of freedom", "standard deviation", "of largest")
-    return Table("Repeatability", headers, tuple(rows), (), frozenset({0, 1}))
+    return table_of("data_quality.repeats", rows)
 
 
 def _groups(settings: Array) -> list[NDArray[np.intp]]:
@@ -186,7 +182,7 @@ def _groups(settings: Array) -> list[NDArray[np.intp]]:
 def outliers(found: Sequence[Check]) -> Table:
     """Readings that do not belong to their sweep, as the data gate names them."""
     rows = [(c.subject, c.statistic) for c in found if c.name == "data_gate" and c.severity is Severity.WARN]
-    return Table("Readings that do not belong", ("row", "found"), tuple(rows), (), frozenset({0, 1}))
+    return table_of("data_quality.outliers", rows)
 
 
 def counts(tables: Sequence[ForceTable]) -> Table:
@@ -199,22 +195,21 @@ def counts(tables: Sequence[ForceTable]) -> Table:
         doubtful = sum(e.uncertain for e in t.exclusions)
         rejected = len(t.exclusions) - whole - sum(e.uncertain and bool(e.component) for e in t.exclusions)
         rows.append((t.name, *map(str, (len(t), cells, used, rejected, doubtful, whole))))
-    headers = ("table", "rows", "force cells", "usable", "rejected cells", "doubtful", "rejected rows")
-    return Table("Rows and cells", headers, tuple(rows), (), frozenset({0}))
+    return table_of("data_quality.counts", rows)
 
 
 def not_used(tables: Sequence[ForceTable]) -> Table:
     """Cells and rows that are not used, gathered by table and reason."""
-    places: dict[tuple[str, str, str], dict[str, list[str]]] = {}
-    for t in tables:
-        for e in t.exclusions:
-            what = places.setdefault((t.name, "doubtful" if e.uncertain else "rejected", e.reason), {})
-            what.setdefault(e.component or "whole row", []).append(t.labels[e.row])
-    rows = tuple(
-        (*key, "; ".join(f"{force}: {_some(labels)}" for force, labels in what.items())) for key, what in places.items()
+    places = collected(
+        ((t.name, "doubtful" if e.uncertain else "rejected", e.reason), (e.component or "whole row", t.labels[e.row]))
+        for t in tables
+        for e in t.exclusions
     )
-    headers = ("table", "what", "reason", "points")
-    return Table("Cells that the fits do not use", headers, rows, (), frozenset(range(4)))
+    rows = (
+        (*key, "; ".join(f"{force}: {_some(labels)}" for force, labels in collected(what).items()))
+        for key, what in places.items()
+    )
+    return table_of("data_quality.not_used", rows)
 
 
 def _some(labels: list[str]) -> str:

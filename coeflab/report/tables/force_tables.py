@@ -6,11 +6,11 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from coeflab.core.table import Table, number
-from coeflab.core.wording import in_sentences
+from coeflab.core.wording import collected, in_sentences
 from coeflab.study.towed import STATES
 
 if TYPE_CHECKING:
-    from coeflab.tables.force_table import Exclusion, ForceTable
+    from coeflab.tables.force_table import ForceTable
 
 
 def _of(components: Sequence[str], table: ForceTable) -> str:
@@ -20,11 +20,9 @@ def _of(components: Sequence[str], table: ForceTable) -> str:
 
 def unused_rows(table: ForceTable) -> list[str]:
     """Every row, or component of one, that no fit uses, by the reason."""
-    by: dict[str, dict[int, list[str]]] = {}
-    for e in table.exclusions:
-        by.setdefault(e.reason, {}).setdefault(e.row, []).append(e.component)
     out = []
-    for reason, rows in by.items():
+    for reason, found in collected((e.reason, (e.row, e.component)) for e in table.exclusions).items():
+        rows = collected(found)
         names = [
             table.labels[row] + (f" {of}" if (of := _of(list(dict.fromkeys(c)), table)) != "row" else "")
             for row, c in rows.items()
@@ -47,11 +45,7 @@ def unused(tables: Sequence[ForceTable]) -> str:
         for t, file in zip(tables, files, strict=True)
     }
     for t in tables:
-        rows: dict[int, list[Exclusion]] = {}
-        for e in t.exclusions:
-            if e.of_source:
-                rows.setdefault(e.row, []).append(e)
-        for row, found in rows.items():
+        for row, found in collected((e.row, e) for e in t.exclusions if e.of_source).items():
             components = list(dict.fromkeys(e.component for e in found))
             of = "row" if set(components) >= set(t.forces) else _of(components, t)
             first = found[0]
@@ -82,11 +76,9 @@ def inspected(table: ForceTable, most: int = 0) -> Table:
             text = number(float(values[i]), 5)
             cells.append(text if table.usable[c][i] else f"({text})")
         rows.append(tuple(cells))
-    by_row: dict[tuple[int, int], dict[str, list[str]]] = {}
-    for e in table.exclusions:
-        by_row.setdefault((e.row, e.line), {}).setdefault(e.reason, []).append(e.component)
     excluded = []
-    for (row, line), reasons in by_row.items():
+    for (row, line), found in collected(((e.row, e.line), (e.reason, e.component)) for e in table.exclusions).items():
+        reasons = collected(found)
         place = table.labels[row] + f" (line {line})" * (table.labels.count(table.labels[row]) > 1)
         phrases = "; ".join(f"{_of(components, table)}: excluded, {reason}" for reason, components in reasons.items())
         excluded.append(f"{place}, {phrases}")

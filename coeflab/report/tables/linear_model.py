@@ -9,10 +9,11 @@ import numpy as np
 
 from coeflab.core.table import ABSENT, Table, folded, number
 from coeflab.core.text.csv_rows import csv_text
-from coeflab.core.wording import listed, one_line
+from coeflab.core.wording import collected, listed, one_line
 from coeflab.law.symbols import CONTROLS
 from coeflab.motion.trim.linear_files import ENDINGS
 from coeflab.motion.trim.linear_model import content
+from coeflab.report.texts import table_of
 from coeflab.vehicle.expected_signs import TURNS
 
 if TYPE_CHECKING:
@@ -58,11 +59,7 @@ def mode_table(model: LinearModel) -> Table:
         for m in model.modes
         if m.eigenvalue.imag >= 0.0
     )
-    notes = (
-        "Period, time to double and time to halve in s. Motion: states with a tenth or more of the mode, by participation.",
-    )
-    headers = ("eigenvalue, 1/s", "period", "doubles in", "halves in", "motion")
-    return Table("Modes: eigenvalues of A", headers, rows, notes, frozenset({4}))
+    return table_of("linear_model.mode_table", rows)
 
 
 def _eigenvalue(mode: Mode) -> str:
@@ -90,10 +87,11 @@ def schedule_table(speeds: Sequence[float], trims: Sequence[Trim], models: Seque
             ]
         mode = (_eigenvalue(model.modes[0]), _parts(model.modes[0])) if model else (ABSENT, found.point.outcome.value)
         rows.append((number(speed), *cells, *mode))
-    told: dict[str, list[str]] = {}
-    for speed, found in zip(speeds, trims, strict=True):
-        for words in (*found.point.doubts(), *found.point.statements):
-            told.setdefault(words, []).append(number(speed))
+    told = collected(
+        (words, number(speed))
+        for speed, found in zip(speeds, trims, strict=True)
+        for words in (*found.point.doubts(), *found.point.statements)
+    )
     if rising := [number(s) for s, t in zip(speeds, trims, strict=True) if t.solved and not t.depth_is_kept]:
         told["Depth is not kept. climb = 0 (--climb 0) asks for a motion that keeps it."] = rising
     notes = tuple(w if len(at) == len(speeds) else f"At {listed(at)} m/s: {w}" for w, at in told.items())

@@ -12,6 +12,7 @@ from coeflab.core.texts import known, remark
 from coeflab.formats.loss_tables import at_points
 from coeflab.law.rigid_body import ideal_quadratics
 from coeflab.law.symbols import COMPONENTS, MOTIONS, derivative, primed
+from coeflab.report.texts import table_of
 from coeflab.vehicle.force_law import points_of
 from coeflab.vehicle.parameter_file import SCHEMA_VERSION, ParameterFile, is_later
 from coeflab.vehicle.second_order import ROUNDING, products_once
@@ -32,35 +33,43 @@ def contents(parameters: ParameterFile, kind: str) -> Table:
         for c in p.coefficients
     )  # fmt: skip
     point = ", ".join(f"{x:g}" for x in p.reference_point.point)
-    notes = (
-        f"primed by {_length(p)}; SI at {p.conditions.speed:g} m/s and {p.conditions.density:g} kg/m^3; about ({point}) m from: {p.reference_point.datum}",
-        f"schema {p.schema_version}, written by coeflab {p.provenance.coeflab_version}; valid"
-        if kind == "coeflab"
-        else f"read as {kind}",
-        *(
-            (
-                f"schema {p.schema_version} is later than {SCHEMA_VERSION}, which this release writes; empty keys passed over",
-            )
-            if is_later(p.schema_version, SCHEMA_VERSION)
-            else ()
+    return table_of(
+        "model_file.contents",
+        rows,
+        (
+            f"schema {p.schema_version}, written by coeflab {p.provenance.coeflab_version}; valid"
+            if kind == "coeflab"
+            else f"read as {kind}",
+            *(
+                (
+                    f"schema {p.schema_version} is later than {SCHEMA_VERSION}, which this release writes; empty keys passed over",
+                )
+                if is_later(p.schema_version, SCHEMA_VERSION)
+                else ()
+            ),
+            *remarks,
+            *(
+                ("values are totals: -C_A(nu) nu of the added mass is in them",)
+                if p.added_mass is not None and kind != "coeflab"
+                else ("accelerations and products by the added mass of the file are listed with --wide",)
+                if p.added_mass is not None
+                else ()
+            ),
         ),
-        *remarks,
-        *(
-            ("values are totals: -C_A(nu) nu of the added mass is in them",)
-            if p.added_mass is not None and kind != "coeflab"
-            else ("accelerations and products by the added mass of the file are listed with --wide",)
-            if p.added_mass is not None
-            else ()
-        ),
+        name=p.name,
+        body=p.body,
+        p=_length(p),
+        speed=p.conditions.speed,
+        density=p.conditions.density,
+        point=point,
+        datum=p.reference_point.datum,
     )
-    headers = ("", "value", "SI", "unit", "U95", "status", "origin", "how")
-    return Table(f"{p.name} ({p.body})", headers, rows, notes, frozenset({0, 3, 5, 6, 7}), ("how", "origin"))
 
 
 def left_out(names: Mapping[str, Sequence[str]], whose: str) -> Table:
     """What a model states and its parameter file does not hold."""
     rows = tuple((kind, ", ".join(held)) for kind, held in names.items())
-    return Table(f"Left out of {whose}", ("kind", "names"), rows or (("nothing", ""),), (), frozenset({0, 1}))
+    return table_of("model_file.left_out", rows or (("nothing", ""),), whose=whose)
 
 
 def by_added_mass(parameters: ParameterFile) -> Table:

@@ -16,11 +16,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from coeflab.core.table import ABSENT, Table, coefficient, number, percent, probability, with_u95
+from coeflab.core.wording import collected
 from coeflab.fits.statistics.least_squares import factorise
 from coeflab.fits.statistics.linear_model import variation
 from coeflab.law.symbols import CONTROLS, FLOW_ANGLES
 from coeflab.law.terms import design
 from coeflab.report.figures.variables import domain_in_words
+from coeflab.report.texts import table_of, text_of
 from coeflab.vehicle.comparison import ROUNDING, Verdict
 
 if TYPE_CHECKING:
@@ -51,25 +53,12 @@ def quality(models: tuple[FittedModel, ...]) -> Table:
         )
         for m in models
     )
-    headers = (
-        "", "form", "n", "terms", "rms", "left out", "of range", "R2", "AICc", "runs", "condition", "domain", "outside",
-    )  # fmt: skip
-    notes: tuple[str, ...] = (
-        "left out: rms error of every point predicted from the others (PRESS); runs: probability of so few or so many "
-        "runs of one sign by chance; R2 of a form without intercept is about zero; outside: what a reader beyond the domain is to do.",
-    )
+    notes: tuple[str, ...] = (text_of("models.quality_notes"),)
     if any(m.is_constant for m in models):
         notes = (*notes, "of range: of the mean, for a model that is one constant.")
     angles = dict.fromkeys(v for m in models for v in m.domain.variables if v in FLOW_ANGLES)
     notes = (*notes, *(FLOW_ANGLES[v] for v in angles))
-    return Table(
-        "Quality of the fitted models",
-        headers,
-        rows,
-        notes,
-        frozenset({0, 1, 11, 12}),
-        ("condition", "runs", "AICc", "outside", "terms"),
-    )
+    return table_of("models.quality", rows, notes)
 
 
 def qualities(models: tuple[FittedModel, ...]) -> tuple[Table, ...]:
@@ -89,21 +78,12 @@ CLOSE, MOST_PAIRS = 0.9, 12
 
 def influence(model: FittedModel) -> Table:
     """The points that move the fit most, by Cook's distance."""
-    d = model.fit.cooks_distance
+    f = model.fit
+    d = f.cooks_distance
     order = [int(i) for i in np.argsort(-np.nan_to_num(d), kind="stable")[:MOST_POINTS] if np.isfinite(d[i])]
-    rows = tuple(
-        (
-            model.labels[i],
-            number(float(d[i]), 3),
-            number(float(model.fit.leverage[i]), 3),
-            number(float(model.fit.residuals[i]), 3),
-            number(float(model.fit.left_out[i]), 3),
-        )
-        for i in order
-    )
-    headers = ("point", "Cook's distance", "leverage", "residual", "left out")
-    notes = ("left out: residual when the point is predicted from the others.",)
-    return Table(f"Most influential points of {model.response}: {model.campaign}", headers, rows, notes, frozenset({0}))
+    columns = (d, f.leverage, f.residuals, f.left_out)
+    rows = ((model.labels[i], *(number(float(values[i]), 3) for values in columns)) for i in order)
+    return table_of("models.influence", rows, response=model.response, campaign=model.campaign)
 
 
 def correlations(model: FittedModel) -> Table:
@@ -128,7 +108,7 @@ def _close_pairs(model: FittedModel, title: str) -> Table:
     rows = tuple((model.symbols[i], model.symbols[j], number(r, 3)) for r, i, j in close[:MOST_PAIRS])
     words = f"{len(close)} of {len(pairs)} pairs lie beyond {CLOSE} in magnitude"
     notes = (f"{words}; the closest {MOST_PAIRS} are shown." if len(close) > MOST_PAIRS else f"{words}.",)
-    return Table(title, ("", "with", "correlation"), rows, notes, frozenset({0, 1}))
+    return table_of("models.close_pairs", rows, notes, title=title)
 
 
 def diagnostics(models: Sequence[FittedModel]) -> Table:
@@ -154,16 +134,7 @@ def diagnostics(models: Sequence[FittedModel]) -> Table:
                 probability(f.runs_probability),
             )
         )
-    headers = (
-        "", "form", "PRESS", "predicted R2", "largest leverage", "high leverage", "largest Cook", "condition", "digits", "runs",
-    )  # fmt: skip
-    notes = (
-        "PRESS: sum of squares of every point predicted from the others (Allen 1974); high leverage: points above 2 rank / n; "
-        "largest Cook: above 1 a point decides the fit (Cook 1977); condition: of the column-scaled terms; digits: those "
-        "of the worst coefficient that it leaves sure; runs: probability of the runs test (Wald & Wolfowitz 1940), rows in "
-        "the order of the table.",
-    )
-    return Table("Diagnostics of the fitted models", headers, tuple(rows), notes, frozenset({0, 1}))
+    return table_of("models.diagnostics", rows)
 
 
 NOT_AVAILABLE = "not available"
@@ -172,15 +143,7 @@ NOT_AVAILABLE = "not available"
 def campaigns(fits: Sequence[FitResult]) -> Table:
     """What every campaign adds to a joint fit, and how well the others predict it; no rows without a joint fit."""
     rows = tuple(row for f in fits for p in f.poolings for row in _rows(p))
-    headers = ("", "campaign", "n", "own intercept", "95 %", "noise", "rms", "rms alone", "left out", "one law")
-    notes = (
-        "own intercept: force at rest, taken off the rows; noise: scatter about the campaign's own law, which weighs its "
-        "rows; rms, rms alone: residuals about the joint law and about the same terms fitted to this campaign alone; left "
-        "out: rms error of a campaign predicted from the others, as a share of its range, one constant of its own free; on "
-        "the line of all campaigns every third point is left out; one law: Wald test by campaign (HC2, approximate "
-        "Hotelling T^2).",
-    )
-    return Table("Campaigns of the joint fit", headers, rows, notes, frozenset({0, 1, 9}))
+    return table_of("models.campaigns", rows)
 
 
 def _rows(p: Pooling) -> list[tuple[str, ...]]:
@@ -214,22 +177,7 @@ def coefficients(found: Comparison) -> Table:
         )
         for r in found.rows
     )  # fmt: skip
-    headers = (
-        "",
-        "first",
-        "U95 of first",
-        "second",
-        "U95 of second",
-        "difference",
-        "combined",
-        "ratio",
-        "verdict",
-        "why",
-    )
-    title = f"first {found.a}, second {found.b}"
-    return Table(
-        title, headers, rows, () if found.models else found.statements, frozenset({0, 8, 9}), ("ratio", "combined")
-    )
+    return table_of("models.coefficients", rows, () if found.models else found.statements, a=found.a, b=found.b)
 
 
 def differ(found: Comparison) -> list[bool]:
@@ -261,36 +209,16 @@ def models(found: Comparison, *, with_statements: bool = True) -> Table:
         )
         for m in found.models
     )  # fmt: skip
-    headers = ("", "points", "rms diff.", "largest", "at", "combined", "% within", "verdict", "why")
-    left = frozenset({0, 4, 7, 8})
-    return Table(
-        "Fitted tables", headers, rows, found.statements if with_statements else (), left, ("at", "points", "largest")
-    )
+    return table_of("models.models", rows, found.statements if with_statements else ())
 
 
 def behaviour(found: Sequence[Behaviour], a: str, b: str) -> Table:
     """What two vehicles do: a row a figure, with the difference over combined U95."""
-    rows = []
-    for r in found:
-        one, other, difference, combined = (
-            ABSENT if x is None else number(x, 4) for x in (r.a, r.b, r.difference, r.combined)
-        )
-        rows.append(
-            (
-                r.name,
-                one,
-                other,
-                difference,
-                combined,
-                ABSENT if r.ratio is None else number(r.ratio, 2),
-                r.unit,
-                r.reason,
-            )
-        )
-    headers = ("figure", "first", "second", "difference", "combined U95", "ratio", "unit", "note")
-    return Table(
-        f"{a} and {b} by what they do", headers, tuple(rows), (), frozenset({0, 6, 7}), ("note", "combined U95")
+    rows = (
+        (r.name, *(number(x) for x in (r.a, r.b, r.difference, r.combined)), number(r.ratio, 2), r.unit, r.reason)
+        for r in found
     )
+    return table_of("models.behaviour", rows, a=a, b=b)
 
 
 def side_by_side(first: ParameterFile, others: Sequence[Comparison], names: Sequence[str]) -> Table:
@@ -319,18 +247,14 @@ def side_by_side(first: ParameterFile, others: Sequence[Comparison], names: Sequ
         rows.append(tuple(row))
     left = frozenset({0, *(6 + 4 * i for i in range(len(others)))})
     notes = (
-        (f"Primed by {first.scaling.length_name} {first.scaling.length:g} m of {names[0]}, about its reference point. "
-         "A difference is apart where it exceeds the root sum of squares of both U95.",) if others else ()
+        (text_of("models.side_by_side", length_name=first.scaling.length_name, length=first.scaling.length, names=names[0]),) if others else ()
     )  # fmt: skip
     return Table("Coefficients side by side" if others else "Coefficients", tuple(headers), tuple(rows), notes, left)
 
 
 def reasons(found: Comparison) -> tuple[str, ...]:
     """What a pair's rows have to say, each reason once with its symbols."""
-    named: dict[str, list[str]] = {}
-    for r in found.rows:
-        if r.reason:
-            named.setdefault(r.reason, []).append(r.symbol)
+    named = collected((r.reason, r.symbol) for r in found.rows if r.reason)
     return tuple(f"{', '.join(symbols)}: {reason}" for reason, symbols in named.items())
 
 

@@ -9,6 +9,7 @@ import numpy as np
 
 from coeflab.core.table import ABSENT, Table
 from coeflab.core.text.csv_rows import csv_text
+from coeflab.core.wording import collected
 from coeflab.law.symbols import CONTROLS
 from coeflab.report.tables.nouns import NO_VALUE
 
@@ -37,10 +38,7 @@ def figure_table(figures: tuple[Figure, ...], title: str, length: float) -> Tabl
              f.definition)
         )  # fmt: skip
     headers = ("quantity", "value", "unit", "in L", *(("95 % interval",) if bounded else ()), "status", "definition")
-    reasons: dict[str, list[str]] = {}
-    for f in figures:
-        if f.why:
-            reasons.setdefault(f.why, []).append(f.name)
+    reasons = collected((f.why, f.name) for f in figures if f.why)
     notes = tuple(f"{_listed(names, len(figures))}: {why}" for why, names in reasons.items())
     if any(row[3] for row in rows):
         notes += (f"in L: over the reference length L = {length:.4g} m",)

@@ -9,6 +9,7 @@ import numpy as np
 from coeflab.core.table import ABSENT, Table, plus_minus, with_u95
 from coeflab.core.texts import remark
 from coeflab.law.symbols import ANGULAR
+from coeflab.report.texts import table_of
 
 if TYPE_CHECKING:
     from coeflab.study.next_tests import NextTests, ProposedTest
@@ -23,10 +24,7 @@ def tables(found: NextTests) -> tuple[Table, ...]:
         )
         for t in found.tests
     ]  # fmt: skip
-    tests = Table(
-        f"Next tests for {found.wanted} = {plus_minus(found.value, found.u95)}", ("test", "gives", "of variance", "U95 then", "of now"), tuple(ranked),
-        tuple(map(remark, found.findings)), frozenset({0, 1}),
-    )  # fmt: skip
+    tests = table_of("next_tests.tables_1", ranked, tuple(map(remark, found.findings)), wanted=found.wanted, value=plus_minus(found.value, found.u95))  # fmt: skip
     rows = [
         (_settings(t) if k == 0 else "", s, with_u95(found.value, before)[1], with_u95(found.value, then)[1], f"{100.0 * then / equal:.0f} %")
         for t in found.tests
@@ -35,8 +33,7 @@ def tables(found: NextTests) -> tuple[Table, ...]:
     ]  # fmt: skip
     if not rows:
         return (tests,)
-    headers = ("runs", "", "U95 now", "then", "of equal spacing's")
-    return tests, Table("Their runs", headers, tuple(rows), (), frozenset({0, 1}))
+    return tests, table_of("next_tests.tables_2", rows)
 
 
 def _settings(test: ProposedTest) -> str:

@@ -11,6 +11,7 @@ import numpy as np
 from coeflab.core.table import ABSENT, Table, number, percent, with_u95
 from coeflab.law.coefficient import COVERS, Status
 from coeflab.law.symbols import COMPONENTS, primed
+from coeflab.report.texts import table_of, text_of, texts_of
 
 if TYPE_CHECKING:
     from coeflab.fits.results.fitted_model import FittedModel
@@ -20,14 +21,9 @@ if TYPE_CHECKING:
     from coeflab.vehicle.parameter_file import ParameterFile
 
 
-SCATTER_ONLY = ("Without a form part: U95 is the scatter of the points about that one form alone.",)
 DEFINED = (
     "U95 of a slope at the origin: 95 % half-width; covers {}. random: scatter of the points; form: the curve that "
     "the points leave open, or what a fixed form misses by its residuals; input: declared errors of inputs, and the grid."
-)
-DEFINED_FIXED = (
-    "U95 of a fixed form: 95 % half-width about that form, not over every curve that the points allow. random: scatter of the "
-    "points; form: what the form misses by its residuals; input: declared errors of inputs, and the grid."
 )
 STATUS = "status"
 ROUNDING = 1e-12
@@ -91,8 +87,10 @@ def coefficients(several: Sequence[Coefficient], title: str = "Coefficients, pri
     headers += ("campaign", "estimator")
     fitted = [c for c in several if c.u95 is not None and c.origin == "fit"]
     slopes = [c for c in fitted if c not in fixed]
-    notes = ((DEFINED.format(covers),) if slopes or not fixed else ()) + ((DEFINED_FIXED,) if fixed else ())
-    notes += SCATTER_ONLY if any(c.parts.model_form is None for c in fitted) else ()
+    notes = ((DEFINED.format(covers),) if slopes or not fixed else ()) + (
+        (text_of("nouns.defined_fixed"),) if fixed else ()
+    )
+    notes += texts_of("nouns.scatter_only") if any(c.parts.model_form is None for c in fitted) else ()
     notes += tuple(
         f"{NO_VALUE if s == 'not_determined' else s.replace('_', ' ')}{_named(several, s)}: {s.advice}"
         for s in sorted({c.status for c in several})
@@ -138,7 +136,7 @@ def terms(model: FittedModel) -> Table:
             )
         )
     title = f"{model.response} [{model.unit if model.unit != '1' else '-'}], {model.form}: {model.campaign}"
-    return Table(title, ("", "term", "value", "U95", "U95 %"), tuple(rows), model.statements, frozenset({0, 1}))
+    return table_of("nouns.terms", rows, model.statements, title=title)
 
 
 def matrix(result: AddedMass) -> Table:
@@ -146,8 +144,7 @@ def matrix(result: AddedMass) -> Table:
     cut = ROUNDING * float(np.max(np.abs(result.matrix)))
     rows = [(a, *(number(v if abs(v) > cut else 0.0) for v in row)) for a, row in zip(COMPONENTS, result.matrix)]
     at = ", ".join(f"{x:g}" for x in result.reference_point)
-    title = f"{result.method}: M_A, kg, kg m, kg m^2, FRD about ({at}) m from: {result.datum}"
-    return Table(title, ("", "u", "v", "w", "p", "q", "r"), tuple(rows))
+    return table_of("nouns.matrix", rows, method=result.method, at=at, datum=result.datum)
 
 
 def parameters(file: ParameterFile) -> Table:
@@ -180,5 +177,6 @@ def motion(trajectory: Trajectory) -> Table:
         f"ended: {trajectory.ended.value.replace('_', ' ')}{': ' * bool(trajectory.why)}{trajectory.why}",
     )
     notes += (f"beyond the data: {', '.join(beyond)}",) if beyond else ()
-    title = f"Motion over {trajectory.time[-1] - trajectory.time[0]:g} s in {len(trajectory.time)} rows"
-    return Table(title, ("", "start", "end", "least", "largest"), rows, notes)
+    return table_of(
+        "nouns.motion", rows, notes, time=trajectory.time[-1] - trajectory.time[0], time_2=len(trajectory.time)
+    )

@@ -11,6 +11,7 @@ from coeflab.core.table import ABSENT, Table, number, percent, plus_minus, proba
 from coeflab.core.wording import finite
 from coeflab.fits.planar_motion import beside_steady
 from coeflab.law.symbols import primed
+from coeflab.report.texts import table_of, text_of, texts_of
 
 if TYPE_CHECKING:
     from coeflab.fits.results.fit_result import FitResult
@@ -18,14 +19,6 @@ if TYPE_CHECKING:
 
 OWN = "zero amplitude"
 SIGNIFICANT = 0.05
-EXPLAINED = (
-    "by amplitude: 8/(3 pi) of x|x| and 3/4 of x^3 at the amplitude of the run. rest: what that leaves of the difference.",
-    f"against {OWN}: slope and terms come from the same runs, so the rest has no U95 of its own.",
-)
-STEADY = (
-    "U95 of the rest joins run, slope and terms as if independent. A rest beyond it is no matter of amplitude: frequency, "
-    "Reynolds number, the set-up, or the acceleration of the flow.",
-)
 
 
 def _pair(both: tuple[float, float]) -> tuple[str, str]:
@@ -48,10 +41,10 @@ def explained(fit: FitResult, others: Sequence[FitResult] = ()) -> Table:
     own = [o.explained() for o in fit.oscillations]
     against = [*own, *beside_steady(fit, others)]
     rows = tuple(_explained(e) for e in against if e.against or np.isfinite(e.by_amplitude))
-    notes = EXPLAINED + (STEADY if len(against) > len(own) else ())
-    headers = ("", "against", "at", "run", "U95 of run", "slope", "difference", "by amplitude", "rest", "U95 of rest")
-    title = f"What amplitude explains: {fit.campaign}"
-    return Table(title, headers, rows, notes if rows else (), frozenset({0, 1}))
+    notes = texts_of("oscillations.explained_notes") + (
+        texts_of("oscillations.steady") if len(against) > len(own) else ()
+    )
+    return table_of("oscillations.explained", rows, notes if rows else (), campaign=fit.campaign)
 
 
 def _explained(e: Explained) -> tuple[str, ...]:
@@ -96,10 +89,7 @@ def _runs(o: Oscillation) -> Table:
         f"U95 of {rate}",
         *more,
     )
-    notes = (
-        "Equivalent linear coefficients of each run; U95 by the scatter of its cycles (Student). 2nd, 3rd: harmonics of the "
-        "force over its fundamental. omega' = omega L/U.",
-    )
+    notes = (text_of("oscillations.runs"),)
     return Table(f"{o.motion.capitalize()} runs: {symbol} and {rate}", headers, rows, notes)
 
 
@@ -115,8 +105,4 @@ def over_frequency(fit: FitResult) -> Table:
             seen = "not known" if np.isnan(p) else "goes with frequency" if p < SIGNIFICANT else "no trend seen"
             cells = *_pair((slope, half)), ABSENT if np.isnan(p) else probability(p)
             rows.append((primed(symbol), f"{number(low, 3)} to {number(high, 3)}", *cells, seen))
-    notes = (
-        "Values are those of the runs' frequencies. Steady ones need an interval in which a + b w'^2 holds: steady_below.",
-    )
-    headers = ("", "omega'", "slope over omega'", "U95", "by chance", "")
-    return Table(f"Frequency: {fit.campaign}", headers, tuple(rows), notes, frozenset({0, 5}))
+    return table_of("oscillations.over_frequency", rows, campaign=fit.campaign)

@@ -6,10 +6,11 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from coeflab.core.table import ABSENT, Table, as_printed, percent, with_u95
-from coeflab.core.wording import listed
+from coeflab.core.wording import collected, listed
 from coeflab.law.symbols import primed
 from coeflab.report.tables.results import NO_VALUE
 from coeflab.report.tables.uncertainty import SET, sentences_on_open
+from coeflab.report.texts import table_of
 from coeflab.study.lines import NAME
 from coeflab.study.towed import NO_RESULT as SHARE
 from coeflab.study.validation import AS_PRINTED, in_millions
@@ -30,9 +31,7 @@ def own_tow(found: Towed) -> Table:
         value = value if r.is_result else NO_RESULT
         line = ABSENT if r.line is None else as_printed(float(f"{r.line:.3g}"))
         rows.append((primed(r.symbol), value, u95, percent(r.u_grid, r.value), line, *map(as_printed, r.published)))
-    named: dict[str, list[str]] = {}
-    for r in found.rows:
-        named.setdefault(r.why, []).append(primed(r.symbol))
+    named = collected((r.why, primed(r.symbol)) for r in found.rows)
     absent = f", as there is no {listed(found.tow.absent)} yet" if found.tow.absent else ""
     run_at = "" if found.reynolds is None else f", Re {in_millions(found.reynolds)}"
     where = f"Campaign {found.tow.campaign}{absent}{run_at}." if found.tow.campaign else ""
@@ -45,10 +44,7 @@ def own_tow(found: Towed) -> Table:
     ]
     assessed = any(r.u_grid for r in found.rows) or all(r.value is None for r in found.rows)
     grid = "" if assessed else "There is no grid study: U95 leaves out the discretisation error."
-    without: dict[str, list[str]] = {}
-    for r in found.rows:
-        if assessed and r.no_grid and not r.missing:
-            without.setdefault(r.no_grid, []).append(primed(r.symbol))
+    without = collected((r.no_grid, primed(r.symbol)) for r in found.rows if assessed and r.no_grid and not r.missing)
     no_grid = [
         f"{', '.join(symbols)}: {why}; U95 leaves out the discretisation error." for why, symbols in without.items()
     ]
@@ -76,21 +72,16 @@ def tow_against(found: Towed) -> Table:
                 *with_u95(v.error, v.u_validation), verdict,
             )
         )  # fmt: skip
-    none: dict[str, list[str]] = {}
-    tests: dict[str, list[str]] = {}
-    printed: dict[str, list[str]] = {}
-    for r in found.rows:
-        none.setdefault(r.why_none, []).append(primed(r.symbol))
-        if r.validation is None:
-            continue
-        test = r.validation.experiment
-        tests.setdefault(test, []).append(primed(r.symbol))
-        value = next((p for p in r.published if p is not None), None)
-        if value is not None and not test.endswith(AS_PRINTED):
-            printed.setdefault(test, []).append(as_printed(value))
+    none = collected((r.why_none, primed(r.symbol)) for r in found.rows)
+    tests = collected((r.validation.experiment, r) for r in found.rows if r.validation is not None)
+    printed = {
+        test: [as_printed(p) for r in rows for p in [p for p in r.published if p is not None][:1]]
+        for test, rows in tests.items()
+        if not test.endswith(AS_PRINTED)
+    }
     notes = [
-        f"D of {', '.join(symbols)}: {_test(test, printed.get(test, []))}{_stated(found, test)}."
-        for test, symbols in tests.items()
+        f"D of {', '.join(primed(r.symbol) for r in those)}: {_test(test, printed.get(test, []))}{_stated(found, test)}."
+        for test, those in tests.items()
     ]
     notes += [f"No verdict on {', '.join(s)}: {why}." for why, s in none.items() if why and not why.startswith("as ")]
     judged = [r.validation for r in found.rows if r.validation is not None]
@@ -102,8 +93,7 @@ def tow_against(found: Towed) -> Table:
     fitted = [primed(v.symbol) for v in judged if v.lacking_measured]
     of = f"U_V of {listed(fitted)}" if 0 < len(fitted) < len(judged) else "U_V"
     notes += sentences_on_open((u for v in judged for u in v.lacking_measured), what=f"From the test, {of} leaves out")
-    headers = ("", "S, CFD", "D, test", "E = S - D", "U_V", "verdict")
-    return Table(f"Own CFD against the test: {found.tow.name}", headers, tuple(rows), tuple(notes), frozenset({0, 5}))
+    return table_of("own_cfd.tow_against", rows, notes, name=found.tow.name)
 
 
 def _of_some(name: str, judged: Sequence[Validation]) -> str:

@@ -10,6 +10,7 @@ import numpy as np
 
 from coeflab.core.table import Table
 from coeflab.report.printable import shortened
+from coeflab.report.texts import table_of
 from coeflab.tables.mapping import known_as
 
 if TYPE_CHECKING:
@@ -55,8 +56,7 @@ def columns(raw: RawTable, proposed: Sequence[Proposal], said: Mapping[str, Colu
     notes = ("? what nobody has confirmed",) if any(row[3].endswith("?") or "?" in row[3] for row in rows) else ()
     if unused:
         notes = (*notes, *textwrap.wrap(f"{len(unused)} not used by fits: {', '.join(unused)}", 76))
-    title = f"{len(raw)} rows, {len(raw.columns)} columns"
-    return Table(title, ("column", "unit", "range", "is"), tuple(rows), notes, frozenset({0, 1, 2, 3}))
+    return table_of("raw_tables.columns", rows, notes, raw=len(raw), columns=len(raw.columns))
 
 
 def by_format(raw: RawTable, proposed: Sequence[Proposal]) -> str:
@@ -76,10 +76,8 @@ def of_run(run: Run) -> tuple[Table, ...]:
     words = [(name, _text(s.value), shortened(s.place, 40)) for name, s in run.conditions.items()]
     rows = tuple((shortened(c.name, 34), shortened(c.unit, UNIT), limits(c), c.means) for c in run.history.columns)
     return (
-        Table("Conditions", ("condition", "value", "where"), tuple(words), (), frozenset({0, 1, 2})),
-        Table(
-            "History", ("column", "unit", "range", "is"), rows, (f"{len(run.history)} rows",), frozenset({0, 1, 2, 3})
-        ),
+        table_of("raw_tables.of_run_1", words),
+        table_of("raw_tables.of_run_2", rows, history=len(run.history)),
     )
 
 
@@ -117,7 +115,7 @@ def stated(raw: RawTable) -> Table:
         (key, shortened(_text(s.value), 24) + "?" * s.offered, shortened(s.place, 36)) for key, s in raw.stated.items()
     )
     notes = ("? words over the table, to be confirmed",) if any(s.offered for s in raw.stated.values()) else ()
-    return Table("Stated by the file", ("key", "value", "where"), rows, notes, frozenset({0, 1, 2}))
+    return table_of("raw_tables.stated", rows, notes)
 
 
 def _text(value: object) -> str:

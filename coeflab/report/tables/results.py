@@ -13,12 +13,13 @@ from coeflab.core.finding import Severity
 from coeflab.core.provenance import work
 from coeflab.core.table import ABSENT, Table, coefficient, number
 from coeflab.core.texts import words
-from coeflab.core.wording import listed
+from coeflab.core.wording import collected, listed
 from coeflab.fits.rows.sweeps import arm_shift
 from coeflab.law.coefficient import COVERS, Status
 from coeflab.law.symbols import primed
 from coeflab.report.tables import nouns as noun_tables
 from coeflab.report.tables.sources import halves
+from coeflab.report.texts import table_of
 from coeflab.study.checks import CHECKS
 from coeflab.tables.assumptions import CODE, FLAG, depends
 
@@ -26,7 +27,6 @@ if TYPE_CHECKING:
     from coeflab.core.finding import Finding
     from coeflab.core.table import Check
     from coeflab.fits.results.straight_runs import StraightRuns
-    from coeflab.fits.uncertainty.budget import Budget
     from coeflab.law.coefficient import Coefficient
     from coeflab.study.study import Study
 
@@ -122,23 +122,19 @@ def covered(
     slopes = [f.coefficients[s.symbol] for f in study.fits for s in f.sweeps if s.target == "x" and s.value is not None]
     wanted = {(c.campaign or "", c.symbol) for c in slopes if among is None or c in among}
     budgets = [b for b in study.budgets if (b.campaign, b.symbol) in wanted]
-    entered: dict[str, list[Budget]] = {}
-    for b in budgets:
-        names = ["declared inputs"] * bool(b.inputs) + ["grid"] * (b.part("grid") is not None)
-        for name in (*names, *(s.name for s in b.studies)):
-            entered.setdefault(name, []).append(b)
+    entered = collected(
+        (name, b)
+        for b in budgets
+        for name, has in (("declared inputs", b.inputs), ("grid", b.part("grid")), *((s.name, s) for s in b.studies))
+        if has
+    )
     several = len({campaign for campaign, _ in wanted}) > 1
     every = tuple(name for name, those in entered.items() if len(those) == len(wanted))
-    some = {name: _by_campaign(those, several=several) for name, those in entered.items() if name not in every}
+    some = {}
+    for name in (name for name in entered if name not in every):
+        by = collected((b.campaign if several else "", primed(b.symbol)) for b in entered[name])
+        some[name] = tuple(", ".join(dict.fromkeys(s)) + f" of {c}" * several for c, s in by.items())
     return (COVERS, *every), some
-
-
-def _by_campaign(budgets: Sequence[Budget], *, several: bool) -> tuple[str, ...]:
-    """Symbols of budgets, followed by their campaign where a study has several."""
-    by: dict[str, dict[str, None]] = {}
-    for b in budgets:
-        by.setdefault(b.campaign if several else "", {})[primed(b.symbol)] = None
-    return tuple(", ".join(symbols) + f" of {campaign}" * several for campaign, symbols in by.items())
 
 
 def headline(study: Study, symbols: Sequence[str] = ()) -> str:
@@ -155,9 +151,7 @@ def headline(study: Study, symbols: Sequence[str] = ()) -> str:
     chosen = [c for c in found if c.symbol in (symbols or study.plan.wanted)] or ([] if symbols else found)
     if not chosen:
         return ""
-    by: dict[str, list[str]] = {}
-    for c in chosen:
-        by.setdefault(c.campaign or "", []).append(c.said)
+    by = collected((c.campaign or "", c.said) for c in chosen)
     each = "; ".join(f"{campaign}: " * (len(by) > 1) + ", ".join(values) for campaign, values in by.items())
     return f"{each} (U95; covers {covers(study, chosen)})."
 
@@ -172,8 +166,7 @@ def straight_runs(found: StraightRuns) -> Table:
     reynolds = [ABSENT] * len(found.speed) if found.reynolds is None else [number(1e-6 * r, 4) for r in found.reynolds]
     rows = zip(found.labels, found.speed, reynolds, found.force, found.primes, strict=True)
     cells = tuple((label, number(u, 4), re, number(x, 4), coefficient(prime)) for label, u, re, x, prime in rows)
-    heads = ("run", "U m/s", "Re in millions", "X N", "X / (1/2 rho U^2 L^2)")
-    return Table(f"Straight runs of {found.table}", heads, cells, (), frozenset({0}))
+    return table_of("results.straight_runs", cells, table=found.table)
 
 
 def primed_about(study: Study) -> str:
@@ -225,8 +218,7 @@ def checks(found: Sequence[Check]) -> Table:
         (c.severity.value, c.name.replace("_", " "), c.subject, c.statistic, c.rule, c.comment)
         for c in sorted(found, key=lambda c: order.index(c.severity))
     )
-    headers = ("", "check", "subject", "found", "rule", "meaning")
-    return Table("Checks", headers, rows, (), frozenset(range(6)))
+    return table_of("results.checks", rows)
 
 
 def warnings(found: Sequence[Check]) -> Table:
@@ -244,7 +236,7 @@ def warnings(found: Sequence[Check]) -> Table:
 def provenance(study: Study) -> Table:
     """Every file that went in, by its sha256."""
     rows = tuple((f.name, f.sha256) for f in study.inputs)
-    return Table("Inputs", ("file", "sha256"), rows, (), frozenset({0, 1}))
+    return table_of("results.provenance", rows)
 
 
 def works(study: Study) -> tuple[tuple[str, str], ...]:

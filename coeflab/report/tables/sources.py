@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING
 from coeflab.core.axes import point_in_words
 from coeflab.core.provenance import work
 from coeflab.core.table import Table
-from coeflab.core.wording import listed
+from coeflab.core.wording import collected, listed
+from coeflab.report.texts import table_of
 from coeflab.tables.to_frd import HALF
 
 if TYPE_CHECKING:
@@ -64,23 +65,19 @@ def made_from(study: Study) -> Table:
         for t in study.tables
         if t.declared is not None and t.declared.source_sha256
     )
-    return Table("Files that the tables were made from", ("table", "source", "sha256"), rows, (), frozenset({0, 1, 2}))
+    return table_of("sources.made_from", rows)
 
 
 def sources(study: Study) -> tuple[str, ...]:
     """Where the measured and computed tables and the published values come from, a sentence a work with the places in it."""
-    places: dict[str, dict[str, None]] = {}
-    for key, place in [(t.source.citation, t.source.place) for t in study.tables] + [
-        (r.citation, r.place) for r in study.references
-    ]:
-        places.setdefault(key, {}).update({place: None} if place else {})
-    return tuple(f"Source: {work(key)} {'; '.join(where)}".strip() for key, where in places.items())
+    tables, references = [t.source for t in study.tables], study.references
+    places = collected([*((s.citation, s.place) for s in tables), *((r.citation, r.place) for r in references)])
+    return tuple(
+        f"Source: {work(key)} {'; '.join(filter(None, dict.fromkeys(where)))}".strip() for key, where in places.items()
+    )
 
 
 def halves(study: Study) -> tuple[str, ...]:
     """Tables that hold forces of half of a body, and what of them is doubled; a sentence a kind."""
-    by: dict[str, list[str]] = {}
-    for t in study.tables:
-        for note in (n for n in t.notes if n.startswith(HALF)):
-            by.setdefault(note, []).append(t.name)
+    by = collected((note, t.name) for t in study.tables for note in t.notes if note.startswith(HALF))
     return tuple(f"{listed(names)}: {note}." for note, names in by.items())

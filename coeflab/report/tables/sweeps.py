@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from coeflab.core.table import Table, coefficient, number, percent, probability, with_u95
 from coeflab.law.symbols import primed
+from coeflab.report.texts import table_of
 
 if TYPE_CHECKING:
     from coeflab.fits.results.fit_result import Sweep
@@ -35,21 +36,19 @@ def estimators(sweep: Sweep) -> Table:
         )
         for e in sweep.forms
     )  # fmt: skip
-    notes = (
-        "Each trusts its form; none is the recommended value. HC2 with Bell-McCaffrey degrees of freedom (dof), HC3 with "
-        "n - p; lack of fit: probability by chance.",
-        *([f"Window: largest {_angle(sweep)}."] if _angle(sweep) else []),
+    return table_of(
+        "sweeps.estimators",
+        rows,
+        [f"Window: largest {_angle(sweep)}."] if _angle(sweep) else [],
+        symbol=primed(sweep.symbol),
     )
-    headers = ("form", "window", "n", "value", "95 % HC2", "95 % HC3", "dof", "lack of fit", "AICc")
-    return Table(f"Other forms for {primed(sweep.symbol)}", headers, rows, notes, frozenset({0}))
 
 
 def sensitivity(sweep: Sweep) -> Table:
     """The recommended value had the sweep ended sooner."""
     rows = tuple((_window(sweep, s.cap), *with_u95(s.value, s.u95), percent(s.u95, s.value)) for s in sweep.sensitivity)
-    headers = ("largest setting", "value", "U95", "U95 %")
     title = f"{primed(sweep.symbol)} by largest setting" + (f", {_angle(sweep)}" if _angle(sweep) else "")
-    return Table(title, headers, rows, (), frozenset({0}))
+    return table_of("sweeps.sensitivity", rows, title=title)
 
 
 def left_out(sweep: Sweep) -> Table:

@@ -9,6 +9,7 @@ from coeflab.core.table import ABSENT, Table
 from coeflab.core.wording import listed
 from coeflab.law.symbols import primed
 from coeflab.report.tables.force_tables import unused_rows
+from coeflab.report.texts import table_of
 from coeflab.study.study import Study
 from coeflab.tables.force_table import ForceTable
 
@@ -26,8 +27,7 @@ def traceability(study: Study) -> Table:
         rows += [] if t.files else [(own[0], ABSENT, ABSENT, *own[1:])]
     named = {row[2] for row in rows}
     rows += [(ABSENT, f.name, f.sha256, "", "", "") for f in study.inputs if f.sha256 not in named]
-    headers = ("table", "file", "sha256", "rows used", "left out, and why", "converted")
-    return Table("From files to points", headers, tuple(rows), (), frozenset({0, 1, 2, 4, 5}))
+    return table_of("traceability.traceability", rows)
 
 
 def _of_fits(study: Study, table: ForceTable) -> list[str]:

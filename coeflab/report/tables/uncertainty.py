@@ -5,6 +5,7 @@ Uncertainty budgets, grid studies, validations and derived quantities, as tables
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING
 
@@ -12,12 +13,13 @@ import numpy as np
 
 from coeflab.core.table import ABSENT, Table, coefficient, number, percent, with_u95
 from coeflab.core.text.csv_rows import csv_text
-from coeflab.core.wording import listed
+from coeflab.core.wording import collected, listed
 from coeflab.fits.uncertainty.budget import COUPLED
 from coeflab.law.friction_line import FRICTION_APART
 from coeflab.law.symbols import primed
 from coeflab.motion.uncertainty.tests import tests_of
 from coeflab.report.tables.motion import DEGREES
+from coeflab.report.texts import table_of, text_of
 from coeflab.study.validation import AS_PRINTED, WIDE
 
 if TYPE_CHECKING:
@@ -40,39 +42,21 @@ def shown_unit(unit: str) -> tuple[float, str]:
 def spread_table(carried: Carried) -> Table:
     """Every figure with its interval, or why it has none."""
     rows = []
-    reasons: dict[str, list[str]] = {}
     for s in carried.spreads:
         factor, unit = shown_unit(s.figure.unit)
         value = ABSENT if s.figure.value is None else f"{s.figure.value * factor:.5g}"
         rows.append(
             (s.figure.name, value, unit, *_interval(s, factor), f"{100.0 * s.having:.4g} %", s.figure.status, s.status)
         )
-        if s.why:
-            reasons.setdefault(s.why, []).append(s.figure.name)
+    reasons = collected((s.why, s.figure.name) for s in carried.spreads if s.why)
     notes = [f"{', '.join(names)}: {why}." for why, names in reasons.items()]
     beyond = [s.figure.name for s in carried.spreads if s.extrapolated]
     if beyond:
         notes.append(f"Beyond the data: {', '.join(beyond)}. The interval does not contain the error of extrapolating.")
     q = carried.question
-    notes.append(
-        f"{q.members} members, seed {q.seed}; percentiles 2.275 and 97.725 (two standard uncertainties to both sides); "
-        "+-: standard error of the ends for so many members."
-    )
-    headers = (
-        "quantity",
-        "value",
-        "unit",
-        "median",
-        "95 % interval",
-        "low +-",
-        "high +-",
-        "members",
-        "status",
-        "interval",
-    )
+    notes.append(text_of("uncertainty.members", members=q.members, seed=q.seed))
     what = "stability" if carried.undetermined else q.manoeuvre.replace("_", " ")
-    title = f"{what} of {carried.vehicle}"
-    return Table(title, headers, tuple(rows), tuple(notes), frozenset({0, 2, 8, 9}))
+    return table_of("uncertainty.spread_table", rows, notes, what=what, vehicle=carried.vehicle)
 
 
 def _interval(s: Spread, factor: float) -> tuple[str, str, str, str]:
@@ -92,12 +76,8 @@ def share_table(found: Importance) -> Table:
         for s in found.shares
         if s.total_bounds[1] >= SMALL
     )  # fmt: skip
-    notes = (
-        f"{found.rows} rows. first: share of the variance that goes if the group is known; total: share that stays if all the "
-        "others are.",
-    )
-    headers = ("group", "from", "first", "U95 of first", "total", "U95 of total")
-    return Table(f"{found.figure}: where its variance comes from", headers, rows, notes, frozenset({0, 1}))
+    notes = (text_of("uncertainty.first_total", rows=found.rows),)
+    return table_of("uncertainty.share_table", rows, notes, figure=found.figure)
 
 
 def _bounds(pair: tuple[float, float]) -> str:
@@ -123,22 +103,15 @@ def tests_table(carried: Carried) -> Table:
     for name, share in (p for i in having for p in i.tests):
         mean[name] = mean.get(name, 0.0) + share / len(having)
     gives = tests_of(carried.varied.symbols)
+    first = Counter(i.tests[0][0] for i in having)
+    largest = sorted(mean.items(), key=lambda p: -p[1])
     rows = tuple(
-        (
-            name,
-            _some(gives[name]),
-            f"{100.0 * share:.0f} %",
-            f"{sum(i.tests[0][0] == name for i in having)} of {len(having)}",
-        )
-        for name, share in sorted(mean.items(), key=lambda p: -p[1])
+        (name, _some(gives[name]), f"{100.0 * share:.0f} %", f"{first[name]} of {len(having)}")
+        for name, share in largest
         if share >= SMALL
     )
-    notes = (
-        f"Mean share in the variance of {_counted(len(having))} that would go if the test gave all these exactly; most of: figures that it takes most off. Coefficients of one estimate or "
-        "fit go together, so that the shares may add up to more than 100 %.",
-    )
-    headers = ("test", "gives", "takes off", "most of")
-    return Table("Which test takes most off", headers, rows, notes if rows else (), frozenset({0, 1}))
+    notes = (text_of("uncertainty.tests", having=_counted(len(having))),)
+    return table_of("uncertainty.tests_table", rows, notes if rows else ())
 
 
 def _some(symbols: Sequence[str]) -> str:
@@ -199,27 +172,19 @@ SET = (
 )  # in a computation: no errors of readings
 
 
-def sentences_on_open(names: Iterable[str], *, computed: bool = False, what: str = "Not in U95") -> list[str]:
-    """What an uncertainty leaves out, as sentences; none where nothing is open.
+def sentences_on_open(names: Iterable[str], *, what: str = "Not in U95") -> list[str]:
+    """What an uncertainty leaves out, in a sentence that begins so; none where nothing is open.
 
     Parameters
     ----------
     names : iterable of str
         As in `Budget.unassessed`.
-    computed : bool
-        Of a computation, whose conditions are set and have no errors of readings.
     what : str
-        How the sentence begins.
     """
     left = list(dict.fromkeys(names))
-    fixed = [n for n in left if computed and n in SET]
-    rest = [n for n in left if n not in fixed]
-    read = [n.removeprefix("error of ") for n in rest if n in READ]
-    others = [n for n in rest if n not in READ]
-    words = [*([f"errors of {listed(read)}"] if read else []), *others]
-    out = [f"{what}: {'; '.join(words)}."] if words else []
-    known = [n for n in fixed if n != COUPLED]
-    return [*out, f"In CFD these are prescribed and carry no measurement error: {listed(known)}."] if known else out
+    read = [n.removeprefix("error of ") for n in left if n in READ]
+    words = [*([f"errors of {listed(read)}"] if read else []), *(n for n in left if n not in READ)]
+    return [f"{what}: {'; '.join(words)}."] if words else []
 
 
 def overview(budgets: Sequence[Budget]) -> Table:
@@ -227,7 +192,7 @@ def overview(budgets: Sequence[Budget]) -> Table:
     names = list(dict.fromkeys(p.name for b in budgets for p in b.parts))
     rows = []
     for b in budgets:
-        shares = {p.name: ABSENT if p.share is None else f"{100.0 * p.share:.1f} %" for p in b.parts}
+        shares = {p.name: _share(p.share) for p in b.parts}
         rows.append(
             (
                 primed(b.symbol), b.campaign, *with_u95(b.value, b.u95), percent(b.u95, b.value),
@@ -235,11 +200,17 @@ def overview(budgets: Sequence[Budget]) -> Table:
             )
         )  # fmt: skip
     headers = ("", "campaign", "value", "U95", "U95 %", *names, "not assessed")
-    notes = (
-        "Columns of parts: share of the variance. U95: root sum of squares of the parts, taken as independent. A dash: "
-        "not assessed or not acting, never zero.",
-    )
+    notes = (text_of("uncertainty.parts"),)
     return Table("Uncertainty budgets", headers, tuple(rows), notes, frozenset({0, 1, len(headers) - 1}))
+
+
+def _share(share: float | None) -> str:
+    return ABSENT if share is None else f"{100.0 * share:.1f} %"
+
+
+def _size(b: Budget, half: float | None) -> tuple[str, str]:
+    """A half-width in the digits that go with the value, and over it."""
+    return with_u95(b.value, half)[1], percent(half, b.value)
 
 
 def budget(b: Budget) -> Table:
@@ -249,43 +220,36 @@ def budget(b: Budget) -> Table:
     for part in b.parts:
         given = sensitivity.get(part.name)
         unit = _unit(given.name) if given else ""
-        rows.append(
-            (
-                part.name,
-                number(given.half_width, 3) + f" {unit}" if given else ABSENT,
-                number(given.sensitivity, 4) if given else ABSENT,
-                with_u95(b.value, part.half_width)[1],
-                percent(part.half_width, b.value),
-                ABSENT if part.share is None else f"{100.0 * part.share:.1f} %",
-            )
-        )
-    rows.append(
-        (
-            "U95",
-            ABSENT,
-            ABSENT,
-            with_u95(b.value, b.u95)[1],
-            percent(b.u95, b.value),
-            ABSENT if b.u95 is None else "100 %",
-        )
-    )
+        of_input = (f"{number(given.half_width, 3)} {unit}", number(given.sensitivity)) if given else (ABSENT, ABSENT)
+        rows.append((part.name, *of_input, *_size(b, part.half_width), _share(part.share)))
+    rows.append(("U95", ABSENT, ABSENT, *_size(b, b.u95), ABSENT if b.u95 is None else "100 %"))
     notes = []
     if b.monte_carlo is not None:
         m = b.monte_carlo
         notes.append(
-            f"All inputs: linear {coefficient(m.linear)}, Monte Carlo {coefficient(m.monte_carlo)} ({m.draws} draws, seed "
-            f"{m.seed}); curve held fixed."
+            text_of(
+                "uncertainty.monte_carlo",
+                linear=coefficient(m.linear),
+                monte_carlo=coefficient(m.monte_carlo),
+                draws=m.draws,
+                seed=m.seed,
+            )
         )
     if b.grid is not None:
         c = b.grid.convergence
         notes.append(
-            f"Grid: {b.grid.component} at {b.grid.setting} on {', '.join(map(str, b.grid.cells))} cells, "
-            f"{b.grid.cells_used} in use: {c.statement}. Its relative half-width is taken for the coefficient."
+            text_of(
+                "uncertainty.grid",
+                component=b.grid.component,
+                setting=b.grid.setting,
+                names=", ".join(map(str, b.grid.cells)),
+                cells_used=b.grid.cells_used,
+                statement=c.statement,
+            )
         )
     notes += [f"{s.component} at {s.setting}, {s.statement}: 95 % {percent(s.half_width, s.used)}." for s in b.studies]
     notes.append(f"Not assessed: {', '.join(b.unassessed) or 'nothing known'}.")
-    headers = ("part", "half-width of the input", "sensitivity", "95 %", "of the value", "of the variance")
-    return Table(f"Budget of {primed(b.symbol)}, {b.campaign}", headers, tuple(rows), tuple(notes), frozenset({0}))
+    return table_of("uncertainty.budget", rows, notes, symbol=primed(b.symbol), campaign=b.campaign)
 
 
 def _unit(name: str) -> str:
@@ -296,19 +260,17 @@ def _unit(name: str) -> str:
 def shared(model: FittedModel) -> Table:
     """What the half-widths of a fitted model hold beside the scatter; no rows where nothing."""
     names = tuple(model.shared)
-    forms = [0.0] * len(model.terms) if model.remainder is None else model.remainder.half_width
+    forms = np.zeros(len(model.terms)) if model.remainder is None else model.remainder.half_width
+    columns = (
+        model.fit.coefficients,
+        model.half_width,
+        model.fit.half_width,
+        forms,
+        *(abs(model.shared[n]) for n in names),
+    )
     rows = tuple(
-        (
-            symbol,
-            coefficient(float(value)),
-            coefficient(float(whole)),
-            coefficient(float(scatter)),
-            coefficient(float(form)),
-            *(coefficient(abs(float(model.shared[n][i]))) for n in names),
-        )
-        for i, (symbol, value, whole, scatter, form) in enumerate(
-            zip(model.symbols, model.fit.coefficients, model.half_width, model.fit.half_width, forms, strict=True)
-        )
+        (symbol, *(coefficient(float(values[i])) for values in columns))
+        for i, symbol in enumerate(model.symbols)
         if names
     )
     headers = ("", "value", "95 %", "random", "form", *names)
@@ -334,12 +296,8 @@ def grids(budgets: Sequence[Budget]) -> Table:
         )
         for g in found.values()
     )
-    headers = (
-        "", "setting", "cells", "values", "order", "extrapolated", "factor", "U95", "U95 %", "convergence",
-    )  # fmt: skip
     words = tuple(f"{g.component} at {g.setting}: {g.convergence.statement}." for g in found.values())
-    notes = ("Half-widths are those of the grid in use. SI units.", *words)
-    return Table("Grid convergence", headers, rows, notes, frozenset({0, 1, 2, 3, 9}))
+    return table_of("uncertainty.grids", rows, words)
 
 
 def studies(budgets: Sequence[Budget]) -> Table:
@@ -353,12 +311,7 @@ def studies(budgets: Sequence[Budget]) -> Table:
         for s in found.values()
         for i, (what, value) in enumerate((("in use", s.used), *s.changed))
     )  # fmt: skip
-    headers = ("study", "", "setting", "", "value", "apart", "95 %")
-    notes = (
-        "One thing changed at a time. 95 %: 2 / sqrt 3 of the largest distance, at least of the iteration noise.",
-        "U95 holds domain and iterations. The spread of turbulence models is an error of the model and stands beside U95 and U_V.",
-    )
-    return Table("Studies of domain, turbulence model and iterations", headers, rows, notes, frozenset({0, 1, 2, 3}))
+    return table_of("uncertainty.studies", rows)
 
 
 def validation(found: Sequence[Validation]) -> Table:
@@ -372,15 +325,7 @@ def validation(found: Sequence[Validation]) -> Table:
         )
         for v in found
     )  # fmt: skip
-    headers = (
-        "", "computed", "measured", "S", "D", "E = S - D", "U_D", "U_SN", "U_red", "U_input", "U_V", "verdict",
-    )  # fmt: skip
-    notes = (
-        "U_SN: grid, domain, iterations and their noise; U_red: form of the curve drawn through computed points; a dash: "
-        "not assessed. E also holds the difference of Reynolds number and rig between both.",
-        *(f"{primed(v.symbol)}: {v.statement}." for v in found),
-    )
-    return Table("Validation of the computation", headers, rows, notes, frozenset({0, 1, 2, 11}))
+    return table_of("uncertainty.validation", rows, (f"{primed(v.symbol)}: {v.statement}." for v in found))
 
 
 def _beside(value: float, half: float | None) -> str:
@@ -397,16 +342,9 @@ def predictions(found: Sequence[Validation]) -> Table:
         )
         for v in sorted(found, key=lambda v: v.within is None)
     )  # fmt: skip
-    headers = ("", "CFD campaign", "test campaign", "S, CFD", "D, test", "E = S - D", "U_V", "verdict")
     weak = f" weak: U_V exceeds {100.0 * WIDE:.0f} % of D." if any(v.weak for v in found) else ""
     printed = " For a test by another method, D is the printed value." if any(v.method for v in found) else ""
-    notes = (
-        f"S is computed and D is measured, independently, on the same body. D is our fit to the points of the test.{printed} E is formed before "
-        f"rounding. U_V: root sum of squares of the uncertainties of S and D. If |E| < U_V, the comparison cannot reveal a modelling error.{weak}",
-        "There is no verdict if the grid error is not estimated, the test used another method, symmetry makes the value zero, or, for drag, friction at "
-        f"the two Reynolds numbers differs by over {100.0 * FRICTION_APART:.0f} %.",
-    )
-    return Table("Predictions by CFD against tests", headers, rows, notes, frozenset({0, 1, 2, 7}))
+    return table_of("uncertainty.predictions", rows, printed=printed, weak=weak, friction_apart=100.0 * FRICTION_APART)
 
 
 def _verdict(v: Validation) -> str:
@@ -429,5 +367,4 @@ def derived(found: Sequence[Derived]) -> Table:
         )
         for d in found
     )
-    headers = ("", "subject", "value", "95 % linear", "95 % Monte Carlo", "percentiles", "")
-    return Table("Centre of pressure and stability with the budgets", headers, rows, (), frozenset({0, 1, 6}))
+    return table_of("uncertainty.derived", rows)
