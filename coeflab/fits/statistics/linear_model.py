@@ -33,6 +33,7 @@ from coeflab.fits.statistics.least_squares import Factorised, aicc, factorise, s
 from coeflab.law.terms import Term, design
 
 FULL_LEVERAGE = 1.0 - 1e-9
+EXACT = 1e-12  # of the response: residuals of arithmetic
 SILENT = 1e-6  # of the pooled scatter: less is no noise but rows that repeat each other to the last digit, and no U95
 CONSTANT = 1e-9  # share of a constant that the columns may leave over
 
@@ -220,7 +221,8 @@ def fit_linear(
     freedom = _freedom(f, free, constraint is not None)
     remaining = float(np.sum(weighted**2))
     variance = remaining / f.freedom if f.freedom > 0 else float("nan")
-    pooled = np.sum((free @ f.back) ** 2, axis=1) * np.nan_to_num(variance)
+    exact = remaining <= (EXACT * float(np.linalg.norm(response * f.root_weights))) ** 2
+    pooled = np.sum((free @ f.back) ** 2, axis=1) * (0.0 if exact else np.nan_to_num(variance))
     freedom = np.where(np.diag(covariance) < SILENT**2 * pooled, 0.0, freedom)
     deviation = np.sqrt(np.maximum(np.diag(covariance), 0.0))
     open_directions = _open_directions(f, free, np.linalg.norm(design * f.root_weights[:, None], axis=0))
