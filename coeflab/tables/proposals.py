@@ -120,6 +120,7 @@ def proposed(column: RawColumn, stated: Mapping[str, object] | None = None) -> P
         return Proposal(
             f"U [{unit} ship {scale!r}]", f"of the ship, over the root of the scale {scale:g}: the speed of the model"
         )
+    own = column.name.strip()
     bare, counted = counted_in(column.name, column.unit)
     bare += "'" * (bare in COMPONENTS)
     if (
@@ -133,6 +134,7 @@ def proposed(column: RawColumn, stated: Mapping[str, object] | None = None) -> P
             return Proposal("", f"{SCALED}: {prime} [1e-3] or [1e3] if it is a prime; else rename the column")
         column = replace(column, name=bare, unit=counted)
     name, why, certain = name_of(column)
+    certain = certain and (not counted or bare == own)  # a factor in a name is confirmed
     if not name:
         if column.is_text:
             held = bool(_lost(column)) or bool(np.any(np.isfinite(column.values)))

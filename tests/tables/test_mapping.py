@@ -463,6 +463,7 @@ def test_a_factor_at_a_symbol_is_what_its_numbers_are_counted_in(name: str, unit
     column = RawColumn(name, unit, np.array([1.0, 2.0]))
     offer = proposed(column, {"coefficients.area": "2 m^2"})
     assert offer.text == what
+    assert not (unit == "" and offer.certain)  # a factor in a name waits for a person
     assert with_unit(RawTable(Path("table.csv"), ()), column, read_column_map(offer.text)).factor == pytest.approx(
         size, rel=1e-12
     )
