@@ -21,7 +21,7 @@ from pathlib import Path
 import numpy as np
 
 from coeflab.core.machine import cores
-from coeflab.tables.collect import collect
+from coeflab.tables.collect import collect_groups
 
 HEAD = "# {what}\n# CofR          : (2.0 0.0 0.0)\n#\n# Time\t(total_x total_y total_z)\t(pressure_x pressure_y pressure_z)\t(viscous_x viscous_y viscous_z)\n"
 FOAM = "FoamFile\n{{\n    version 2.0;\n    format ascii;\n    class {kind};\n    object {name};\n}}\n"
@@ -126,7 +126,7 @@ def main() -> None:
         ):
             lines: list[str] = []
             began = time.perf_counter()
-            found = collect(root, "openfoam", workers=workers, state=kept, progress=lines.append)
+            found = collect_groups(root, "openfoam", workers=workers, state=kept, progress=lines.append)[0]
             times[name] = time.perf_counter() - began, found.again, len(lines)
         y = found.table.meaning("Y")
         assert y is not None

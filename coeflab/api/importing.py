@@ -12,7 +12,6 @@ from coeflab.core.units import quantity
 from coeflab.law.scaling import beyond_ends
 from coeflab.tables import several_tables
 from coeflab.tables.campaign import FILE
-from coeflab.tables.collect import runs_shown
 from coeflab.tables.column_map import ColumnMap, read_column_map
 from coeflab.tables.conditions import BETWEEN
 from coeflab.tables.force_table import ForceTable
@@ -21,6 +20,7 @@ from coeflab.tables.imported import Filled, checked, contents
 from coeflab.tables.interpretation import Interpretation, accepted_without_source
 from coeflab.tables.mapping import assigned, without_a_setting
 from coeflab.tables.parts import JOIN, Part, alike, own, read_parts, require_parts, stated_together, with_shared_words
+from coeflab.tables.runs_table import runs_shown
 from coeflab.tables.settings import Setting, assumed, read_in, require_one_datum, saved_mapping
 from coeflab.tables.settings_in_files import doubtful_setting
 from coeflab.tables.vocabulary import words_of

@@ -29,7 +29,7 @@ OTHER_OUT = "Name another --out, or replace it with --force."
 def command(
     *,
     ctx: typer.Context,
-    path: str,
+    path: list[str],
     out: Path | None = None,
     map_: list[str],
     set_: list[str],
@@ -43,7 +43,7 @@ def command(
     accept: bool = False,
     force: bool = False,
 ) -> None:
-    """Make a campaign of a table or a folder of runs.
+    """Make a campaign of a table, several of one folder, or a folder of runs.
 
     Shows one form: what each column is and what each setting would be, why, and what is open. On a terminal one line answers
     it; elsewhere its last lines are the command that does. Writes table.csv and a commented campaign.toml, and prints the
@@ -54,12 +54,12 @@ def command(
     from coeflab.core.files import readable, typed, write_all
 
     ctx.with_resource(words_of(words))
-    file = typed(path)
+    file, among = _one_place(path)
     out = typed(out) if out is not None else _named_after(file)
     readable(file)
     if not force and out.exists() and not _may_be_written(out, accept):
         raise OutputError(f"{out} exists and is not empty. {OTHER_OUT}")
-    stated = stated_of(mapping, set_, [*option, *of_runs(name, runs, state)], as_)
+    stated = stated_of(mapping, set_, [*option, *among, *of_runs(name, runs, state)], as_)
     draft = Draft(file, stated, assumed(out), map_)
     read(draft)
     if sys.stdin.isatty():
@@ -77,6 +77,25 @@ def command(
     failed = _first_slopes(out)
     if failed:
         raise typer.Exit(1)
+
+
+def _one_place(paths: Sequence[str]) -> tuple[Path, list[str]]:
+    """What is read, and the option that chooses several files of a folder."""
+    from coeflab.core.errors import InputError
+    from coeflab.core.files import readable, typed
+
+    files = [typed(path) for path in paths]
+    if len(files) == 1:
+        return files[0], []
+    for file in files:
+        readable(file)
+    folders = {file.resolve().parent for file in files}
+    if len(folders) > 1 or any(file.is_dir() for file in files):
+        raise InputError(
+            f"{len(files)} paths", "one file, several files of one folder, or one folder",
+            advice="What belongs to one campaign lies in one folder; tests of two campaigns are imported one by one.",
+        )  # fmt: skip
+    return files[0].parent, [f"files={','.join(file.name for file in files)}"]
 
 
 def _may_be_written(out: Path, accept: bool) -> bool:
@@ -97,13 +116,13 @@ def _named_after(file: Path) -> Path:
 
 
 def _typed_so_far(
-    path: str, out: Path, map_: Sequence[str], set_: Sequence[str], mapping: Path | None, option: Sequence[str], as_: str,
+    paths: Sequence[str], out: Path, map_: Sequence[str], set_: Sequence[str], mapping: Path | None, option: Sequence[str], as_: str,
     name: Sequence[str], runs: Path | None, state: Path | None, force: bool, words: Path | None,
 ) -> list[str]:  # fmt: skip
     """The words of the command as they were typed, without what was left open."""
     from coeflab.api.importing import quoted
 
-    typed = [quoted(path)]
+    typed = [quoted(path) for path in paths]
     alone = {"--as": as_, "--words": words, "--runs": runs, "--state": state, "--mapping": mapping}
     typed += [f"{flag} {quoted(str(phrases))}" for flag, phrases in alone.items() if phrases]
     typed += [f"--name {quoted(text)}" for text in name]

@@ -107,6 +107,9 @@ def new(
     *,
     name: str,
     numbers: list[str],
+    from_: Path | None = None,
+    axes: str = "",
+    option: list[str],
     length: str = "",
     length_name: str = "LOA",
     speed: str = "",
@@ -128,22 +131,26 @@ def new(
     """Write a parameter file of your own numbers.
 
     Works out the SI values, m' and the covariance. Nothing is assumed: what is not stated is not in the file. Values are
-    totals: Nv' holds the Munk moment. An added mass is an acceleration derivative, "Yvdot'=-0.029". A file that exists is not
-    written over.
+    totals: Nv' holds the Munk moment. An added mass is an acceleration derivative, "Yvdot'=-0.029". --from reads a sheet of symbols,
+    values, units and U95. A file that exists is not written over.
     """
     import shlex
 
-    from coeflab.api.parameters import plausibility, typed_file
+    from coeflab.api.importing import options_of
+    from coeflab.api.parameters import beside_sheet, plausibility, read_coefficient_list, typed_file
     from coeflab.core.errors import InputError, OutputError
     from coeflab.core.files import typed, write_all
     from coeflab.core.wording import file_stem
     from coeflab.report.tables.model_file import contents
 
+    sheet = None if from_ is None else read_coefficient_list(typed(from_), axes, options_of(option))
     result = typed_file(
-        name, numbers, length=length, length_name=length_name, speed=speed, density=density, about=about, mass=mass, cg=cg,
+        name, [*(sheet.numbers if sheet else ()), *numbers], length=length, length_name=length_name, speed=speed, density=density, about=about, mass=mass, cg=cg,
         inertia=inertia, volume=volume, cb=cb, body=body, thrusters=thruster, rudder=rudder,
         stern_planes=stern_planes, bow_planes=bow_planes,
     )  # fmt: skip
+    if sheet is not None and from_ is not None:
+        result = beside_sheet(result, sheet, from_)
     if file_stem(name) != name:
         raise InputError(f'"{name}"', "a name that a file can have: letters, digits, _ and -", column="NAME")
     path = typed(out) / f"{name}.parameters.json"

@@ -106,6 +106,17 @@ class InputError(CoeflabError):
         self.example = ""
         super().__init__(str(self))
 
+    def at(
+        self,
+        file: str | Path | None = None,
+        line: int | None = None,
+        column: str | None = None,
+        *,
+        key: str | None = None,
+    ) -> InputError:
+        """The same complaint with its place, to be raised by the caller."""
+        return type(self)(self.found, self.expected, file=file, line=line, column=column, key=key, advice=self.advice)
+
     @property
     def lines(self) -> tuple[str, ...]:
         """The complaints of a file, each with its place."""

@@ -246,6 +246,14 @@ def factor(unit: str, dimension: str) -> float:
     return value
 
 
+def fits(unit: str, dimension: str) -> bool:
+    """Whether a text is a unit of a dimension; an empty one is none."""
+    try:
+        return bool(unit) and factor(unit, dimension) > 0.0
+    except UnitsError:
+        return False
+
+
 def with_unit(value: Any, dimension: str) -> float:
     """A number of a file in SI, `quantity`, where a bare number stands for SI but for angles: these need their unit, or are 0.
 

@@ -7,9 +7,8 @@ from typing import Any
 
 import numpy as np
 
-from coeflab.formats.flat_law import RULES, flat_tables, place_at
-from coeflab.law.domain import Domain
-from coeflab.law.force_law import BASE, ForceLaw, ForceTerm, Reading, place_of
+from coeflab.formats.flat_law import RULES, flat_tables, place_at, table_of
+from coeflab.law.force_law import BASE, ForceLaw, ForceTerm, place_of
 from coeflab.law.terms import Factor, Term
 from coeflab.vehicle.force_law import motion_law
 from coeflab.vehicle.parameter_file import ParameterFile
@@ -44,17 +43,8 @@ def law_of_tables(tables: Sequence[Mapping[str, Any]], wind: Sequence[Sequence[A
     terms: list[ForceTerm] = []
     for k, t in enumerate(tables):
         names = tuple(BASE[int(v) - 1] for v in t["variables"])
-        hull = Domain(
-            names,
-            np.array(t["low"]),
-            np.array(t["high"]),
-            np.array(t["spaces"]).reshape(-1, len(names) + 1),
-            RULES[int(t["rule"])],
-        )
-        readings = tuple(
-            (v, Reading(float(p), float(low), float(high), True) if t["boxed"] else Reading(float(p), table=str(k)))
-            for v, p, low, high in zip(names, t["prime"], t["low"], t["high"], strict=True)
-        )
+        box = t["low"], t["high"]
+        hull, readings = table_of(str(k), names, box, t["spaces"], int(t["rule"]), t["prime"], bool(t["boxed"]))
         for place, value, power, *powers in t["terms"]:
             factors = tuple(
                 Factor(v, int(n), absolute)
@@ -63,18 +53,6 @@ def law_of_tables(tables: Sequence[Mapping[str, Any]], wind: Sequence[Sequence[A
                 if n
             )
             component, into = place_at(int(place) - 1, wind)
-            terms.append(
-                ForceTerm(
-                    str(k),
-                    component,
-                    Term(factors),
-                    float(value),
-                    int(power),
-                    1.0,
-                    "table",
-                    readings=readings,
-                    hull=hull,
-                    into=into,
-                )
-            )
+            whole = Term(factors), float(value), int(power), 1.0
+            terms.append(ForceTerm(str(k), component, *whole, "table", readings=readings, hull=hull, into=into))
     return ForceLaw(tuple(terms), np.zeros((6, 6, 6)))

@@ -12,6 +12,7 @@ import numpy as np
 
 from coeflab.core.errors import InputError, PluginError, shown
 from coeflab.core.machine import one_thread
+from coeflab.core.texts import input_error
 from coeflab.core.wording import PREFIX, file_stem
 from coeflab.formats import (
     EXPORTERS,
@@ -128,9 +129,9 @@ def _refuse_places(files: Mapping[str, bytes], parameters: ParameterFile, target
     for name in files:
         if "/" in name or "\\" in name or name.startswith(".") or not name.isprintable() or len(name) > LONGEST:
             theirs = parameters.name in name
-            raise InputError(
-                f"a file called {shown(name)}", "a name that files can be given" if theirs else "a plain file name",
-                column="name" if theirs else f"exporter.{target}",
+            raise input_error(
+                "formats.file_of_another_name", column="name" if theirs else f"exporter.{target}", name=shown(name),
+                wanted="a name that files can be given" if theirs else "a plain file name",
             )  # fmt: skip
 
 

@@ -14,10 +14,10 @@ from typing import Any
 
 import numpy as np
 
-from coeflab.core.errors import InputError
+from coeflab.core.texts import input_error
 from coeflab.core.types import Array, brief
 from coeflab.law.domain import SLACK, Domain, Extrapolation
-from coeflab.law.force_law import BASE, EVERYWHERE, WIND, ForceLaw, ForceTerm
+from coeflab.law.force_law import BASE, EVERYWHERE, WIND, ForceLaw, ForceTerm, Reading
 from coeflab.law.rigid_body import rigid_body_inertia
 from coeflab.law.symbols import COMPONENTS, MOTIONS
 from coeflab.vehicle.force_law import motion_law
@@ -36,6 +36,40 @@ def place_at(place: int, wind: Sequence[Sequence[Any]]) -> tuple[str, tuple[bool
     group, which = divmod(place - len(COMPONENTS), len(WIND))
     one, two, three = map(bool, wind[group])
     return WIND[which], (one, two, three)
+
+
+Readings = tuple[tuple[str, Reading], ...]
+
+
+def table_of(
+    key: str, names: tuple[str, ...], box: tuple[Any, Any], spaces: Any, rule: int, primes: Sequence[float], boxed: bool
+) -> tuple[Domain, Readings]:
+    """Hull and readings of a table by the numbers that a program has of it.
+
+    Parameters
+    ----------
+    key : str
+        Of the table, for readings outside of a box.
+    names : tuple of str
+        Its variables.
+    box : two (d,) sequences
+        Low and high ends.
+    spaces : (m, d + 1) array
+    rule : int
+        Of `RULES`.
+    primes : (d,) sequence
+    boxed : bool
+        Whether every variable is held by itself.
+    """
+    low, high = (np.array(end, dtype=float) for end in box)
+    each = zip(names, primes, low, high, strict=True)
+    readings = (
+        (v, Reading(float(p), float(a), float(b), True) if boxed else Reading(float(p), table=key))
+        for v, p, a, b in each
+    )
+    return Domain(names, low, high, np.array(spaces, dtype=float).reshape(-1, len(names) + 1), RULES[rule]), tuple(
+        readings
+    )
 
 
 @brief
@@ -103,9 +137,7 @@ def feet(hull: Domain) -> tuple[Array, Array]:
     bounds = -(hull.spaces[:, d] + hull.spaces[:, :d] @ hull.low)[: len(length)] / length
     normals = normals / length[:, None]
     if comb(len(normals), min(d, len(normals))) > MOST_CORNERS:
-        raise InputError(
-            f"a hull of {len(normals)} half-spaces in {d} variables", "one of fewer corners", column="models"
-        )
+        raise input_error("formats.hull_of_many_corners", column="models", count=len(normals), d=d)
     touched: list[frozenset[int]] = []
     for rows in combinations(range(len(normals)), d):
         at = list(rows)
@@ -200,9 +232,7 @@ def flat_law(parameters: ParameterFile) -> FlatLaw:
         at = np.ix_(free, free)
         whole = (rigid + water_inertia(parameters).matrix)[at]
         if not np.linalg.eigvalsh((whole + whole.T) / 2.0)[0] > 0.0:
-            raise InputError(
-                "an inertia M + M_A that is not positive definite", "positive masses and inertias", column="added_mass"
-            )
+            raise input_error("formats.inertia_of_c_not_positive", column="added_mass")
         inverse[at] = np.linalg.inv(whole)
         if h is not None:
             weight, lift = mass.mass * h.gravity, parameters.conditions.density * h.gravity * h.volume

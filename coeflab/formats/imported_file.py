@@ -20,6 +20,7 @@ from coeflab.core.errors import InputError
 from coeflab.core.finding import Finding, Severity
 from coeflab.core.limits import positive_number
 from coeflab.core.provenance import InputFile, sha256_of
+from coeflab.core.texts import input_error
 from coeflab.core.types import Array, brief, locking
 from coeflab.core.version import VERSION
 from coeflab.core.wording import one_line
@@ -99,7 +100,7 @@ def imported_file(stated: Stated, sources: Sequence[InputFile], citations: tuple
     except ValidationError as why:
         first = why.errors()[0]
         place = ".".join(str(p) for p in first["loc"]) or stated.name
-        raise InputError(first["msg"], "numbers that make a parameter file", column=place) from None
+        raise input_error("formats.no_parameter_file", column=place, first=first["msg"]) from None
 
 
 def _built(stated: Stated, sources: Sequence[InputFile], citations: tuple[str, ...]) -> ParameterFile:

@@ -13,6 +13,7 @@ from coeflab.core.finding import Finding, Severity
 from coeflab.core.limits import JSON_BYTES, XML_BYTES
 from coeflab.core.table import Check
 from coeflab.core.text.toml import read_text
+from coeflab.core.texts import input_error
 from coeflab.core.types import brief
 from coeflab.core.wording import listed
 from coeflab.formats import PARAMETER_IMPORTERS, NoDensityError
@@ -70,15 +71,19 @@ def recognised(path: Path) -> str:
     refuse_shape(path)
     text = read_text(path, max(XML_BYTES, JSON_BYTES))
     if "\0" in text:
-        raise InputError("a zero byte", "UTF-8 text", file=path, advice="Save the file as UTF-8.")
+        raise input_error("formats.zero_byte", path)
     if text.lstrip().startswith("{"):
         return OWN
-    importers = {name: PARAMETER_IMPORTERS.load(name) for name in PARAMETER_IMPORTERS.usable()}
-    known = [name for name, importer in importers.items() if importer.recognises(path)]
+    known = _known(path)
     if len(known) != 1:
         found = f"a file that {listed(known)} both know" if known else "a file that no importer knows"
-        raise InputError(found, f"a parameter file, or {', '.join(i.reads for i in importers.values())}", file=path)
+        kinds = ", ".join(PARAMETER_IMPORTERS.load(name).reads for name in PARAMETER_IMPORTERS.usable())
+        raise InputError(found, f"a parameter file, or {kinds}", file=path)
     return known[0]
+
+
+def _known(path: Path) -> list[str]:
+    return [name for name in PARAMETER_IMPORTERS.usable() if PARAMETER_IMPORTERS.load(name).recognises(path)]
 
 
 def read_model_file(path: Path, density: float | None = None) -> ModelFile:
@@ -179,6 +184,5 @@ def recognised_or_own(path: Path) -> str:
     text = read_text(path, max(XML_BYTES, JSON_BYTES))
     if "\0" in text or text.lstrip().startswith("{"):
         return OWN
-    importers = {name: PARAMETER_IMPORTERS.load(name) for name in PARAMETER_IMPORTERS.usable()}
-    known = [name for name, importer in importers.items() if importer.recognises(path)]
+    known = _known(path)
     return known[0] if len(known) == 1 else OWN

@@ -39,6 +39,7 @@ from coeflab.study.towed import Towed, towed
 from coeflab.vehicle.reference import Comparison, Reference, Relation
 from coeflab.vehicle.stability import ALONE, INDICES, Derived, missing_for_stability, sense, stability
 
+ROLL = "K"  # moments of which no hull has a sign: a headline says what is open of one that is asked for, or alone
 PLACES = 4  # of a line, which has no U95 to say how many count
 LARGEST, TALL = 100_000, 440.0  # letters of a drawing that a first page may hold; points, with the axes below it
 SUBTITLE = "Summary on one page; the report holds every number, check and source"
@@ -271,7 +272,7 @@ def _sentence(study: Study, beside: Beside, rows: tuple[AnswerRow, ...]) -> str:
         s = "s" * (len(rows) > 1)
         wanted = "wanted " * (not study.plan.wanted or any(r.symbol in study.plan.wanted for r in rows))
         first = f"{name}: {of} {wanted}coefficient{s} found, {'each' if bounded == len(valued) else spelled_out(bounded)} with U95"
-        first += _open(valued)
+        first += _open([r for r in valued if r.symbol in study.plan.wanted or r.symbol[0] != ROLL] or valued)
         compared = ((FITS.load(r.fit).printed_inside, r) for r in study.fits if r.fit in FITS.names())
         inside, printed = map(sum, zip((0, 0), *(count(r) for count, r in compared if count is not None), strict=True))
         words = f"{inside} of {printed} printed coefficients inside their fitted U95" if printed else ""

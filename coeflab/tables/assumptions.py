@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 from coeflab.core.finding import Finding, Severity
 from coeflab.law.symbols import ANGULAR, CONTROLS, MOMENTS, MOTIONS, derivative, primed
 
-CODE = "assumed.key"
+CODE, INERTIA = "assumed.key", "assumed.inertia"
 FLAG = " *"  # behind a coefficient that hangs on something which no source states
 
 

@@ -8,11 +8,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from coeflab.core.errors import UnitsError
-from coeflab.core.units import factor
+from coeflab.core.units import factor, fits
 from coeflab.tables.column_map import DIMENSIONS, ROLES, SETTINGS, read_column_map
+from coeflab.tables.column_names import named_as
 from coeflab.tables.dialect import Marks, one_reading
-from coeflab.tables.proposals import named_as
 from coeflab.tables.raw_table import RawColumn, RawTable, Stated
 from coeflab.tables.vocabulary import vocabulary
 
@@ -53,11 +52,7 @@ def settings_in(text: str, marks: Marks) -> Iterator[tuple[str, float, str]]:
         if not found or ROLES[read_column_map(found).name] not in SETTINGS:
             continue
         number = one_reading(m["number"].replace("\u2212", "-"), marks)
-        try:
-            factor(unit, DIMENSIONS[found])
-        except UnitsError:
-            continue
-        if number is not None and unit:
+        if number is not None and fits(unit, DIMENSIONS[found]):
             yield found, number, unit
 
 

@@ -21,6 +21,7 @@ from coeflab.core.errors import InputError, shown
 from coeflab.core.files import named
 from coeflab.core.provenance import TABLE_KINDS, Source
 from coeflab.core.text.toml import read_toml
+from coeflab.core.texts import input_error
 from coeflab.core.types import brief, locked
 from coeflab.core.wording import Verbatim
 from coeflab.law.scaling import Conditions, Scaling, doubtful_mass
@@ -154,7 +155,7 @@ HALVES = {"starboard": PORT_STARBOARD, "port": PORT_STARBOARD, "upper": UP_DOWN,
 HALF_WORDS = 'true or false, or which half: "starboard" or "port" of a cut at y = 0, "upper" or "lower" of one at z = 0'
 
 
-def cut_of(half: bool | str) -> Cut | None:
+def cut_of(half: bool | str | None) -> Cut | None:
     """The cut of a half model, for which ``true`` is one at y = 0; None of a whole one."""
     if not half:
         return None
@@ -360,7 +361,7 @@ class CampaignHead(takes.Declaration):
     title: takes.Text
     body: takes.Text
     importer: takes.Words = "csv"
-    half_model: HalfModel = False
+    half_model: HalfModel | None = None
     symmetry: Annotated[tuple[str, ...], SYMMETRY_WORDS] = ()
     appendages: takes.Anything = None
     reynolds: takes.Anything = None
@@ -468,27 +469,18 @@ class CampaignFile(takes.Declaration):
     def check(self) -> None:
         """At least one table; those by symmetry are of others, and of a body with a symmetry, as halves cut at z = 0 are."""
         if not self.table:
-            raise InputError(
-                "no [[table]]", "at least one table", column="table", advice='Add [[table]] with file = "table.csv".'
-            )
+            raise input_error("tables.no_table", column="table")
         density = self.conditions.density
         if self.inertia is not None and (doubt := doubtful_mass(self.inertia.mass, density, self.scaling)):
-            raise InputError(
-                f"{self.inertia.mass:g} kg",
-                "the mass of a body of that length",
-                column="inertia.mass",
-                advice=f"{doubt}.",
-            )
+            raise input_error("tables.mass_of_no_body", column="inertia.mass", mass=self.inertia.mass, doubt=doubt)
         halves = [("campaign", self.campaign.half_model)]
         halves += [(f"table[{i}]", t.half_model) for i, t in enumerate(self.table) if t.half_model is not None]
         for where, half in halves:
             cut = cut_of(half)
             # Most bodies are alike to port and starboard; alike above and below are few, which somebody has to say.
             if cut is not None and cut.symmetry == UP_DOWN and UP_DOWN not in self.campaign.symmetry:
-                raise InputError(
-                    f"{shown(half)}, half of a body cut at {cut.plane}, without declared {UP_DOWN} symmetry",
-                    f"a body that is its own mirror image in {cut.plane}", column=f"{where}.half_model",
-                    advice=f'Add "{UP_DOWN}" to campaign.symmetry: symmetry = ["{UP_DOWN}"]. A body that is not cannot be cut there.',
+                raise input_error(
+                    "tables.half_without_symmetry", column=f"{where}.half_model", half=shown(half), plane=cut.plane, up_down=UP_DOWN,
                 )  # fmt: skip
         for i, table in enumerate(self.table):
             others = [t.file for t in self.table if t is not table and not t.by_symmetry]
@@ -497,9 +489,7 @@ class CampaignFile(takes.Declaration):
                 raise InputError(shown(table.by_symmetry), expected, column=f"table[{i}].by_symmetry")
             if table.by_symmetry and not self.campaign.symmetry:
                 advice = f"Add campaign.symmetry, a list of {', '.join(SYMMETRIES)}."
-                raise InputError(
-                    "a body without declared symmetry", "one with it", column=f"table[{i}].by_symmetry", advice=advice
-                )
+                raise input_error("tables.no_declared_symmetry", column=f"table[{i}].by_symmetry", advice=advice)
 
 
 @brief
@@ -521,7 +511,7 @@ class Campaign:
     reference_point: NDArray[np.float64]
     scaling: Scaling
     conditions: Conditions
-    half_model: bool | str
+    half_model: bool | str | None
     inertia: TowedInertia | None
     source: Source
     tables: tuple[TableDeclaration, ...]
@@ -539,11 +529,25 @@ class Campaign:
             object.__setattr__(self, name, MappingProxyType(dict(getattr(self, name))))
         object.__setattr__(self, "reference_point", locked(self.reference_point))
 
-    def fail(self, table: TableDeclaration, key: str, found: str, expected: str, advice: str = "") -> InputError:
+    def wanted(self, only: str | None) -> tuple[TableDeclaration, ...]:
+        """The tables, or the one of that file name.
+
+        Raises
+        ------
+        InputError
+            There is none.
+        """
+        out = tuple(t for t in self.tables if only is None or Path(t.file).name == only)
+        if not out:
+            known = ", ".join(t.file for t in self.tables)
+            raise InputError(f"no [[table]] for {shown(only)}", f"one of {known}", file=self.path, column="table")
+        return out
+
+    def fail(self, table: TableDeclaration, key: str, code: str, **facts: Any) -> InputError:
         """An error about a key of one ``[[table]]``, to be raised by the caller."""
         at = next(i for i, own in enumerate(self.tables) if own is table)
         line = self.lines[at] if self.lines else None
-        return InputError(found, expected, file=self.path, line=line, key=f"table[{at}].{key}", advice=advice)
+        return input_error(code, self.path, line, key=f"table[{at}].{key}", **facts)
 
 
 def read_campaign(path: str | Path) -> Campaign:

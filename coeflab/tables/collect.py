@@ -12,23 +12,22 @@ from typing import Any
 
 import numpy as np
 
-from coeflab.core.errors import InputError, together
+from coeflab.core.errors import together
 from coeflab.core.provenance import InputFile, sha256_of
-from coeflab.core.table import ABSENT, Table
-from coeflab.core.types import Array, brief
+from coeflab.core.table import Table
+from coeflab.core.texts import input_error
+from coeflab.core.types import brief
 from coeflab.core.units import SI
-from coeflab.law.symbols import ANGULAR, COMPONENTS, LINEAR
-from coeflab.tables.conditions import DIMENSIONS, SETTINGS, Condition, NamePattern, name_pattern, named, of_files
+from coeflab.law.symbols import ANGULAR, LINEAR
+from coeflab.tables.conditions import SETTINGS, Condition, NamePattern, name_pattern, named, of_files
 from coeflab.tables.histories import ORDER, Convergence
-from coeflab.tables.raw_table import HALF_MODEL, NO_FORCES, RawColumn, RawTable, Stated
+from coeflab.tables.raw_table import NO_FORCES, RawTable
 from coeflab.tables.run_list import RunList, joined, read_run_list, required
-from coeflab.tables.runs import Progress, RunSummary, find_runs, read_all
+from coeflab.tables.run_summary import RunSummary
+from coeflab.tables.runs import Progress, find_runs, read_all
+from coeflab.tables.runs_table import ALL, runs_shown, table_of_runs
 
 FULL, FEWEST = 0.75, 6  # a matrix of settings: share that is there, and its least size
-ONE_FOR_ALL = ("axes.", "scaling.", "conditions.density", "conditions.viscosity", "table.contains_inertia")
-ITERATIONS, START, STATUS, ORIGIN = "iterations", "plateau start", "status", "condition from"
-WINDOW = "averaged over"
-DOUBTFUL, ALL, LABEL, IGNORE = "uncertain", "all", "label", "ignore"
 MOST_REMARKS = 20
 OF_MOTION = re.compile(r"\b(?:velocit(?:y|ies)|speed|angle|inflow)\b")
 SETTING_NAMES = frozenset(SETTINGS)
@@ -40,11 +39,7 @@ KEPT = {
     Convergence.TOO_SHORT: "of which what is too short is marked as uncertain and not used",
     Convergence.DRIFTING: "which are kept but marked as uncertain",
 }
-SAME = 1e-5  # relative: speeds come from vectors of six digits
 EARLY = 0.6  # of the median end of all runs: what ends before it may have crashed
-UNLIKE = (
-    3.0  # ratio of two standard errors beyond what eight batches explain: 95 % of chi-square of 7 degrees of freedom
-)
 
 
 @brief
@@ -94,93 +89,6 @@ class Collected:
         return runs_shown(self.table, most) or Table("Runs", ("run",), ())
 
 
-def runs_shown(table: RawTable, most: int = 0) -> Table | None:
-    """Every run with its condition, the place that it comes from, and its status; None for a table of no runs.
-
-    Parameters
-    ----------
-    table : RawTable
-    most : int
-        Runs shown, those that are not converged first; 0 for all.
-    """
-    texts = {c.name: c.texts for c in table.columns if c.name in (ORIGIN, STATUS)}
-    if len(texts) < 2:
-        return None
-    chosen = list(range(len(table)))
-    if most and len(chosen) > most:
-        chosen = sorted(sorted(chosen, key=lambda i: -ORDER.index(Convergence(texts[STATUS][i])))[:most])
-    settings = [c for c in table.columns if c.means in SETTINGS]
-    start, iterations = table.column(START).values, table.column(ITERATIONS).values
-    rows = [
-        (
-            table.row_labels[i],
-            *(f"{c.values[i]:.5g} {c.unit}".removesuffix(" -") for c in settings),
-            ABSENT if math.isnan(iterations[i]) else f"{iterations[i]:.10g}",
-            ABSENT if math.isnan(start[i]) else f"{start[i]:g}",
-            texts[STATUS][i],
-            texts[ORIGIN][i],
-        )
-        for i in chosen
-    ]
-    counts = ", ".join(f"{n} {s}" for s in ORDER if (n := texts[STATUS].count(s)))
-    more = f"; {len(table) - len(rows)} are not shown" if len(rows) < len(table) else ""
-    heads = ("run", *(c.name for c in settings), ITERATIONS, "plateau from", STATUS, ORIGIN)
-    return Table("Runs", heads, tuple(rows), (f"{counts}{more}.",), frozenset({0, len(heads) - 2, len(heads) - 1}))
-
-
-def collect(
-    path: Path,
-    importer: str = "",
-    *,
-    options: Mapping[str, Any] | None = None,
-    names: str = "",
-    run_list: Path | None = None,
-    progress: Progress | None = None,
-    workers: int | None = None,
-    state: Path | None = None,
-) -> Collected:
-    """Collect a folder of runs, or a single one, into a table.
-
-    Parameters
-    ----------
-    path : Path
-    importer : str
-        Format of the runs; empty: the one that recognises them.
-    options : mapping, optional
-        Of the importer.
-    names : str
-        Pattern of the runs' names, see `coeflab.tables.conditions.NamePattern`.
-    run_list : Path, optional
-        CSV or TOML with the conditions of runs, see `coeflab.tables.conditions.read_run_list`.
-    progress : callable, optional
-        Is handed a line now and then.
-    workers : int, optional
-        Processes; unless given, as many as there are cores once work is long enough.
-    state : Path, optional
-        File, or folder for one, that keeps what was read; a run whose files did not change is not read again.
-
-    Raises
-    ------
-    InputError
-        No run, runs of two formats, conditions that are unknown or contradict each other, units or axes that differ between
-        runs; all complaints of one kind at once.
-    CoeflabError
-        A process was killed; what was read is kept in the state file.
-    OutputError
-        The state file cannot be written.
-    """
-    return collect_groups(
-        path,
-        importer,
-        options=options,
-        patterns=(names,),
-        run_list=run_list,
-        progress=progress,
-        workers=workers,
-        state=state,
-    )[0]
-
-
 def collect_groups(
     path: Path,
     importer: str = "",
@@ -192,19 +100,36 @@ def collect_groups(
     workers: int | None = None,
     state: Path | None = None,
 ) -> tuple[Collected, ...]:
-    """Runs whose names follow several patterns as a table each; they are read once.
+    """Collect a folder of runs, or a single one; those whose names follow one of several patterns are a table, and all are read once.
 
     Parameters
     ----------
+    path : Path
+    importer : str
+        Format of the runs; empty: the one that recognises them.
+    options : mapping, optional
+        Of the importer.
     patterns : sequence of str
-        A run belongs to the one that its name fits. Of a single pattern, which may be empty, all runs are.
-    path, importer, options, run_list, progress, workers, state
-        See `collect`.
+        Of names, see `coeflab.tables.conditions.NamePattern`; a run belongs to the one that its name fits. Of a single pattern,
+        which may be empty, all runs are.
+    run_list : Path, optional
+        CSV or TOML with the conditions of runs, see `coeflab.tables.run_list.read_run_list`.
+    progress : callable, optional
+        Is handed a line now and then.
+    workers : int, optional
+        Processes; unless given, as many as there are cores once work is long enough.
+    state : Path, optional
+        File, or folder for one, that keeps what was read; a run whose files did not change is not read again.
 
     Raises
     ------
     InputError
-        As `collect`; a run with forces whose name fits no pattern, or two.
+        No run, runs of two formats, conditions that are unknown or contradict each other, units or axes that differ between
+        runs, a run with forces whose name fits no pattern, or two; all complaints of one kind at once.
+    CoeflabError
+        A process was killed; what was read is kept in the state file.
+    OutputError
+        The state file cannot be written.
     """
     named_by = [name_pattern(text) if text else None for text in patterns]
     listed_runs = read_run_list(run_list) if run_list is not None else None
@@ -217,7 +142,9 @@ def collect_groups(
     else:
         fits = {s.name: [p for p in named_by if p and p.conditions(s.name) is not None] for s in summaries}
         complaints = [
-            InputError(f"{len(fits[s.name]) or 'no'} of the patterns fit{'s' * (not fits[s.name])} it", "one", file=s.name)
+            input_error(
+                "tables.several_patterns_fit", s.name, count=len(fits[s.name]) or "no", ending="s" * (not fits[s.name])
+            )
             for s in summaries if len(fits[s.name]) != 1 and (fits[s.name] or s.status.has_numbers)
         ]  # fmt: skip
         if complaints:
@@ -226,10 +153,8 @@ def collect_groups(
     out = []
     for pattern, group in zip(named_by, groups, strict=True):
         if not group:
-            raise InputError(
-                f"no run of the pattern {pattern.text if pattern else ''}",
-                f"names such as {named(list(found)[:3])}",
-                file=path,
+            raise input_error(
+                "tables.no_run_of_pattern", path, pattern=pattern.text if pattern else "", some=named(list(found)[:3])
             )
         out.append(_collected(path, chosen, group, pattern, listed_runs, matched, again))
     return tuple(out)
@@ -264,7 +189,7 @@ def _collected(
     used = {s.name: replace(s, status=Convergence.SHORT) for s in rows if _is_short_but_used(s, doubtful)}
     rows, summaries = [used.get(s.name, s) for s in rows], [used.get(s.name, s) for s in summaries]
     remarks = _remarks(summaries, rows, missing, duplicates, copies, grids)
-    table = _table(path, chosen, rows, known, doubtful, remarks)
+    table = table_of_runs(path, chosen, rows, known, doubtful, remarks)
     return Collected(table, tuple(summaries), missing, duplicates, chosen, again)
 
 
@@ -424,191 +349,3 @@ def _remarks(
     if len(common) > MOST_REMARKS:
         out.append(f"{len(common) - MOST_REMARKS} more remarks of single runs.")
     return tuple(out)
-
-
-def _table(
-    path: Path, importer: str, rows: Sequence[RunSummary], known: Sequence[str], doubtful: Mapping[str, str],
-    remarks: tuple[str, ...],
-) -> RawTable:  # fmt: skip
-    columns = [_setting(rows, name) for name in known]
-    by_name = _by_name(rows)
-    found = dict.fromkeys(c for r in rows for c in r.means)
-    components = list(found) if by_name else [c for c in COMPONENTS if c in found]
-    more = list(remarks)
-    for c in components:
-        header = next(r.headers[c] for r in rows if c in r.means)
-        values = _numbers([r.means.get(c) for r in rows])
-        columns.append(RawColumn(header, _unit_of(rows, c), values, means="" if by_name else c))
-    header_of = {c: next(r.headers[c] for r in rows if c in r.means) if by_name else c for c in components}
-    for c in components:
-        errors = _numbers([r.errors.get(c) for r in rows])
-        bare = [r.name for r, e in zip(rows, errors, strict=True) if c in r.means and not e > 0.0]
-        if bare and all(r.status is Convergence.FINAL for r in rows if c in r.means):
-            continue  # said of the runs
-        if bare:
-            more.append(f"No se_{c}: {named(bare)} without a history, or of zeros only, has no standard error.")
-        else:
-            errors, raised = _floored(errors, [r.status is Convergence.CONVERGED for r in rows])
-            if raised:
-                unit = _unit_of(rows, c)
-                more.append(raised.format(f"se_{header_of[c]}", f" {unit}" if unit not in ("", "-") else ""))
-            columns.append(RawColumn(f"se_{c}", _unit_of(rows, c), errors, means="" if by_name else f"se_{c}"))
-    others = dict.fromkeys(k for r in rows for k in r.conditions if k not in SETTINGS)
-    columns += [
-        _other(rows, k)
-        for k in ("cells", "y_plus", *(o for o in others if o not in ("cells", "y_plus")))
-        if k in others
-    ]
-    columns.append(RawColumn(ITERATIONS, "-", _numbers([r.iterations for r in rows]), means=IGNORE))
-    unit = next((r.start_unit for r in rows if r.start_unit), "-")
-    columns.append(RawColumn(START, unit, _numbers([r.start for r in rows]), means=IGNORE))
-    columns.append(_text(STATUS, [str(r.status) for r in rows]))
-    columns.append(_text(WINDOW, [r.averaged for r in rows]))
-    columns.append(_text(ORIGIN, [_origin(r, known) for r in rows]))
-    columns.append(_text(DOUBTFUL, [doubtful[r.name] for r in rows], means=DOUBTFUL))
-    columns += _beside([r.patches for r in rows], IGNORE) + _beside([r.beside for r in rows], "" if by_name else IGNORE)
-    stated, differing = _stated(rows)
-    more += [f"{k} differs between runs ({text}) and is left out." for k, text in differing.items()]
-    versions = sorted({v for r in rows if (v := r.dialect.get("version"))})
-    return RawTable(
-        path=path,
-        columns=tuple(columns),
-        row_labels=tuple(r.name for r in rows),
-        files=tuple(dict.fromkeys(Path(f) for r in rows for f in r.files)),
-        dialect={
-            "importer": importer,
-            "runs": str(len(rows)),
-            **({"version": ", ".join(versions)} if versions else {}),
-            **({WINDOW: averaged} if (averaged := _averaged(rows)) else {}),
-        },
-        stated=stated,
-        remarks=tuple(more),
-    )
-
-
-def _averaged(rows: Sequence[RunSummary]) -> str:
-    """What the means of all runs are over: one window, or where each run has its own."""
-    windows = {r.averaged for r in rows if r.averaged}
-    return windows.pop() if len(windows) == 1 else "a window of each run" if windows else ""
-
-
-def _floored(errors: Array, converged: Sequence[bool]) -> tuple[Array, str]:
-    """Standard errors of runs, none below the pooled one of the converged runs where they differ more than chance explains.
-
-    A history that converged to the last digit says nothing of how far its mean is from that of its neighbours: unless errors are
-    pooled, few rows carry the whole fit.
-    """
-    own = errors[np.array(converged) & np.isfinite(errors)]
-    if own.size < 2 or float(own.max()) <= UNLIKE * float(own.min()):
-        return errors, ""
-    pooled = float(np.sqrt(np.mean(own**2)))
-    low = errors < pooled
-    words = f"{{}} of {int(low.sum())} of {errors.size} runs raised to {pooled:.2g}{{}}, the pooled error (root mean square) of the "
-    words += f"converged runs: their own differ {own.max() / own.min():.2g}-fold, which would leave the fit to the few smallest."
-    return np.where(low, pooled, errors), words
-
-
-def _numbers(values: Sequence[float | None]) -> Array:
-    return np.array([math.nan if v is None else v for v in values], dtype=float)
-
-
-def _beside(rows: Sequence[Mapping[str, tuple[float, str]]], means: str) -> list[RawColumn]:
-    """Columns of patches, or of what is no force."""
-    first = {name: unit for row in reversed(rows) for name, (_, unit) in row.items()}
-    names = dict.fromkeys(name for row in rows for name in row)
-    return [RawColumn(n, first[n], _numbers([r[n][0] if n in r else None for r in rows]), means=means) for n in names]
-
-
-def _origin(run: RunSummary, known: Sequence[str]) -> str:
-    return "; ".join(dict.fromkeys(o for k in known for o in run.conditions[k].origins))
-
-
-def _by_name(rows: Sequence[RunSummary]) -> bool:
-    """Whether the columns go by their own names, in all runs alike."""
-    kinds = {r.by_name: r.name for r in rows if r.means}
-    if len(kinds) > 1:
-        raise InputError(
-            f"named components in {kinds[False]} and columns of other names in {kinds[True]}", "the same columns in all runs",
-            advice="Collect them into tables of their own.",
-        )  # fmt: skip
-    return True in kinds
-
-
-def _text(name: str, texts: Sequence[str], means: str = LABEL) -> RawColumn:
-    return RawColumn(name, "", np.full(len(texts), np.nan), tuple(texts), means)
-
-
-def _setting(rows: Sequence[RunSummary], name: str) -> RawColumn:
-    """A column of settings: in the unit of its origin where all runs have one, else in SI."""
-    cells = [r.conditions[name] for r in rows]
-    units = {c.unit for c in cells}
-    written = len(units) == 1
-    values = [c.written if written else c.value for c in cells]
-    unit = cells[0].unit if written else SI[DIMENSIONS[name]] or "-"
-    return RawColumn(name, unit, np.array(values, dtype=float), means=name)
-
-
-def _other(rows: Sequence[RunSummary], name: str) -> RawColumn:
-    """A column of what is no setting: labels, cells, y+."""
-    cells = [r.conditions.get(name) for r in rows]
-    means = name if name == "cells" else IGNORE
-    if any(c is not None and isinstance(c.value, str) for c in cells):
-        texts = ["" if c is None else str(c.value) for c in cells]
-        return _text(name, texts)
-    unit = next((c.unit for c in cells if c is not None and c.unit), "-")
-    return RawColumn(name, unit, _numbers([_as_number(c) for c in cells]), means=means)
-
-
-def _as_number(condition: Condition | None) -> float | None:
-    return None if condition is None or isinstance(condition.value, str) else condition.written
-
-
-def _unit_of(rows: Sequence[RunSummary], component: str) -> str:
-    units: dict[str, str] = {}
-    for r in rows:
-        if component in r.units:
-            units.setdefault(r.units[component], r.name)
-    if len(units) > 1:
-        some = " and ".join(f"[{u}] in {name}" for u, name in units.items())
-        raise InputError(f"{component} in {some}", "one unit for all runs", column=component)
-    return next(iter(units), "")
-
-
-def _alike(a: object, b: object) -> bool:
-    """Whether two stated values are one, but for rounding."""
-    if isinstance(a, (float, tuple)) and isinstance(b, (float, tuple)):
-        return np.shape(a) == np.shape(b) and bool(np.allclose(a, b, rtol=SAME, atol=1e-9))
-    return a == b
-
-
-def _stated(rows: Sequence[RunSummary]) -> tuple[dict[str, Stated], dict[str, str]]:
-    """What all runs state alike, and of what differs two values; axes, points and densities must not differ."""
-    first: dict[str, tuple[str, Stated]] = {}
-    differing: dict[str, str] = {}
-    complaints = []
-    for r in rows:
-        for key, one in r.stated.items():
-            name, before = first.setdefault(key, (r.name, one))
-            if _alike(before.value, one.value) or key in differing:
-                continue
-            differing[key] = f"{_five(before.value)} in {name}, {_five(one.value)} in {r.name}"
-            if key.startswith(ONE_FOR_ALL):
-                complaints.append(InputError(
-                    f"{before.value} in {name} ({before.place}) and {one.value} in {r.name} ({one.place})",
-                    "one value for all runs of a table", key=key, advice="Collect them into tables of their own.",
-                ))  # fmt: skip
-    halves = {HALF_MODEL in r.stated: r for r in rows if r.status.has_numbers}
-    if len(halves) > 1:
-        complaints.append(InputError(
-            f"a symmetry plane in {halves[True].name} ({halves[True].stated[HALF_MODEL].contradicted}) and none in {halves[False].name}",
-            "half of the body in all runs of a table, or in none", key=HALF_MODEL, advice="Collect them into tables of their own.",
-        ))  # fmt: skip
-    if complaints:
-        raise together(complaints)
-    return {k: s for k, (_, s) in first.items() if k not in differing}, differing
-
-
-def _five(value: str | float | bool | tuple[float, ...]) -> str:
-    if isinstance(value, tuple):
-        return f"({', '.join(f'{x:.5g}' for x in value)})"
-    return str(value) if isinstance(value, (str, bool)) else f"{value:.5g}"

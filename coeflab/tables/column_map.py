@@ -8,6 +8,7 @@ from typing import Annotated, Any
 
 from coeflab.core.declarations import Takes
 from coeflab.core.errors import InputError, UnitsError, shown
+from coeflab.core.texts import input_error
 from coeflab.core.units import SI, factor, quantity
 from coeflab.law.symbols import ANGULAR, COMPONENTS, CONTROLS, LINEAR, MOMENTS
 from coeflab.tables.vocabulary import did_you_mean, one_name, vocabulary
@@ -170,8 +171,8 @@ def read_column_map(text: Any) -> ColumnMap:
         raise InputError(shown(text), EXPECTED)
     name = match["name"] if match["name"] in ROLES else one_name(match["name"])
     if name not in ROLES:
-        raise InputError(
-            f"the unknown name {shown(match['name'])}", f"one of {', '.join(ROLES)}, with ' for a prime", advice=did_you_mean(match["name"])
+        raise input_error(
+            "tables.unknown_name", match=shown(match["name"]), roles=", ".join(ROLES), did_you_mean=did_you_mean(match["name"]),
         )  # fmt: skip
     out = ColumnMap(
         name,
@@ -187,18 +188,15 @@ def _checked(said: ColumnMap, text: str) -> ColumnMap:
     """The entry with its unit understood."""
     if said.role == "word":
         if said.unit or said.negative or said.primed:
-            raise InputError(shown(text), f"{said.name} without sign, prime and unit")
+            raise input_error("tables.word_with_sign", text=shown(text), name=said.name)
         return said
     if said.error and (said.name not in FORCES or said.negative):
-        raise InputError(shown(text), f"se_ before one of {' '.join(FORCES)}, without a sign")
+        raise input_error("tables.no_standard_error", text=shown(text), forces=" ".join(FORCES))
     if said.primed:
         if said.name not in (*FORCES, *LINEAR, *ANGULAR):
             raise InputError(shown(text), f"a prime of {' '.join((*COMPONENTS, *LINEAR, *ANGULAR, *WIND))} only")
         if said.unit not in ("", "-") and share(said.unit) is None:
-            raise UnitsError(
-                f"[{said.unit}]", f"[-], [%] or a power of ten such as [1e-3] of {said.name}'",
-                advice="Leave out ' for a dimensional column.",
-            )  # fmt: skip
+            raise input_error("tables.no_share", kind=UnitsError, unit=said.unit, name=said.name)
         return replace(said, unit=said.unit or "-")
     if said.unit.startswith("coefficient"):
         return _coefficient(said, text)
@@ -227,13 +225,12 @@ def _coefficient(said: ColumnMap, text: str) -> ColumnMap:
         return said
     if match is None or not match["area"] or said.name not in FORCES or moment != bool(match["length"]):
         expected = f"{said.plain} [{PER['moment' if moment else 'force']}]"
-        raise InputError(
-            shown(text), expected if said.name in FORCES else f"a coefficient of {' '.join(FORCES)} only",
-            advice="By 1/2 rho U^2 A, moments by 1/2 rho U^2 A L; L is no part of a force's.",
+        raise input_error(
+            "tables.no_coefficient", text=shown(text), wanted=expected if said.name in FORCES else f"a coefficient of {' '.join(FORCES)} only",
         )  # fmt: skip
     area, length = _size("A", match["area"], "area"), _size("L", match["length"], "length") if moment else 0.0
     if area <= 0.0 or (moment and length <= 0.0):
-        raise InputError(shown(text), "an area and a length above zero")
+        raise input_error("tables.no_sizes", text=shown(text))
     return replace(said, unit="-", area=area, length=length)
 
 

@@ -44,12 +44,8 @@ _WORDS = {
     for word in words.split()
 }  # fmt: skip
 _SIGNS = {
-    "": "",
-    "-": "",
-    "+": "",
-    **dict.fromkeys(("m", "n", "M", "N", "neg", "minus"), "-"),
-    **dict.fromkeys(("p", "P", "pos", "plus"), "+"),
-}
+    **dict.fromkeys(("", "-", "+"), ""), **dict.fromkeys(["m", "n", "M", "N", "neg", "minus"], "-"), **dict.fromkeys(["p", "P", "pos", "plus"], "+"),
+}  # fmt: skip
 _BEFORE = re.compile(r"(?<![A-Za-z])(?:neg|minus|pos|plus|[mnpMNP]|[-+])$")  # a sign before a number
 _DIGITS = re.compile(r"([0-9]+(?:\.[0-9]+|p[0-9]+)?)")
 _RATE_UNIT = re.compile(r"(?i)_?(?:(?P<deg>deg_?p?s|dps|grad_?s)|rad_?p?s)(?![a-z])")  # behind the number of a rate

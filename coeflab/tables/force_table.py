@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
@@ -28,11 +28,8 @@ ROUNDING = 1e-12
 FEWEST_SPEEDS = 3  # of straight runs that give X0'
 COARSER, FINER = "coarser grid", "finer grid: for the grid study only"
 ONE_GRID = 1.15  # ratio of cells: those of one grid at other angles lie closer
-STUDIES = {
-    "domain": "domain size",
-    "turbulence": "turbulence model",
-    "iterations": "iterations",
-}  # what each part is called
+# What each part is called.
+STUDIES = {"domain": "domain size", "turbulence": "turbulence model", "iterations": "iterations"}
 DRIVEN = "propeller running: X holds its thrust"
 SAME_SIZE = 0.02  # of the largest |x|: one radius, or one setting of a sweep, as measured
 
@@ -299,21 +296,21 @@ class ForceTable:
 
     def at_speed(self, speed: float) -> ForceTable:
         """The rows of one speed in use, m/s, as measured; the others are left out."""
-        rows = np.abs(self.speed - speed) > SAME_SIZE * abs(speed)
-        used = [int(i) for i in np.flatnonzero(rows) if any(mask[i] for mask in self.usable.values())]
-        usable = {c: mask & ~rows for c, mask in self.usable.items()}
-        found = [
-            Exclusion(i, self.lines[i] if self.lines else 0, "", f"another speed than {speed:g} m/s") for i in used
-        ]
-        return replace(self, usable=usable, exclusions=(*self.exclusions, *found))
+        away = np.abs(self.speed - speed) > SAME_SIZE * abs(speed)
+        return self._without(away, lambda _: f"another speed than {speed:g} m/s")
 
     def without_studies(self) -> ForceTable:
         """Rows in which a study changed something are left to that study."""
-        rows = [i for i, changed in enumerate(self.variants) if changed]
-        used = [i for i in rows if any(mask[i] for mask in self.usable.values())]
-        usable = {c: mask & ~np.isin(np.arange(len(self)), rows) for c, mask in self.usable.items()}
-        found = [Exclusion(i, self.lines[i] if self.lines else 0, "", f"study only: {self.variants[i]}") for i in used]
-        return replace(self, usable=usable, exclusions=(*self.exclusions, *found)) if rows else self
+        if not any(self.variants):
+            return self
+        return self._without(np.array(list(map(bool, self.variants))), lambda i: f"study only: {self.variants[i]}")
+
+    def _without(self, rows: NDArray[np.bool_], why: Callable[[int], str]) -> ForceTable:
+        """The table with whole rows, (n,), left out of all fits; each that was in use with its reason."""
+        used = [int(i) for i in np.flatnonzero(rows) if any(mask[i] for mask in self.usable.values())]
+        usable = {c: mask & ~rows for c, mask in self.usable.items()}
+        found = (Exclusion(i, self.lines[i] if self.lines else 0, "", why(i)) for i in used)
+        return replace(self, usable=usable, exclusions=(*self.exclusions, *found))
 
     def sound(self, component: str) -> NDArray[np.bool_]:
         """Rows, (n,), whose force has a number that its source or the state of its run does not call doubtful."""

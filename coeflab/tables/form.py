@@ -12,6 +12,7 @@ import numpy as np
 
 from coeflab.core.errors import InputError, shown, together
 from coeflab.core.table import folded
+from coeflab.core.texts import input_error
 from coeflab.tables.column_map import ColumnMap, read_column_map
 from coeflab.tables.interpretation import Doubt, Interpretation
 from coeflab.tables.mapping import with_unit
@@ -338,7 +339,7 @@ def _take(out: Typed, part: str, lines: Sequence[Line], columns: Places, options
     one = None if fits else _line(name, lines)
     key = one.key if one else name
     if not words.startswith("="):
-        raise InputError(shown(part), "KEY=VALUE or NUMBER=VALUE, several with ; between, or NUMBER ?")
+        raise input_error("tables.no_key_value", part=shown(part))
     words = words[1:].strip()
     if key in options:
         out.options[key] = words
@@ -373,9 +374,7 @@ def _line(name: str, lines: Sequence[Line]) -> Line | None:
 
 
 def _no_key(name: str, lines: Sequence[Line]) -> InputError:
-    return InputError(
-        f"no key or column {shown(name)}", f"a number from 1 to {len(lines)}, a key or a column of the form"
-    )
+    return input_error("tables.no_line_of_the_form", name=shown(name), count=len(lines))
 
 
 def of_campaign(settings: Settings) -> dict[str, Setting]:

@@ -34,9 +34,8 @@ NO_PLATEAU = 0.48  # MSER-5 at its own limit, half of the history
 JUMPS, RETURNS = 0.5, 0.1  # of the range of a cycle: medians of its steps, and of what is left of them after a period
 LONGEST_CYCLE = 4  # iterations
 LEAST_ROWS, LEAST_BATCHES, MOST_BATCHES = 40, 8, 30
-CALIBRATED_ROWS = (
-    100  # on the plateau: the least for which docs/data_in_runs.md has the coverage of too short histories
-)
+# On the plateau: the least for which docs/data_in_runs.md has the coverage of too short histories.
+CALIBRATED_ROWS = 100
 TIMES_A_BATCH = 4.0  # autocorrelation times
 SHARE = 0.01  # of a value: a drift below it, or a whole window within it, does not matter
 OF_THE_WHOLE = 0.05  # a component counts as at least this share of the whole force, or moment: see `scales`

@@ -15,6 +15,7 @@ from coeflab.core.errors import InputError, shown
 from coeflab.core.provenance import sha256_of
 from coeflab.core.text.csv_rows import csv_text
 from coeflab.core.text.toml import toml_text, value
+from coeflab.core.texts import input_error
 from coeflab.core.types import brief
 from coeflab.core.units import quantity
 from coeflab.core.version import VERSION
@@ -116,7 +117,7 @@ def contents(tables: Sequence[Filled], settings: Settings, source: Path) -> dict
         + "."
     )
     comments.pop("source.how_obtained", None)
-    if assumed := [a for a in ("alpha", "beta") if f"axes.{a}" in common and SLENDER in common[f"axes.{a}"].origin]:
+    if assumed := angles_assumed(common):
         sections["axes"]["assumed"] = assumed
         comments["axes.assumed"] = "a sign inferred from the slope: delete this once it is known from the source"
     sections.pop("table")
@@ -129,24 +130,9 @@ def contents(tables: Sequence[Filled], settings: Settings, source: Path) -> dict
             own["labels"] = labels
         if any(c.said.name == "cells" for c in t.columns):
             own["cells"] = "cells"
-        for key, one in t.settings.items():
-            section, _, name = key.partition(".")
-            if section == "table" and (len(tables) == 1 or key in t.asked or key not in OF_ARMS):
-                at_reference = key == ARM_POINT and one.value == REFERENCE
-                own[name] = t.settings[POINT_OF].value if at_reference else one.value
-                words[name] = f"{one.origin}: the {REFERENCE}" if at_reference else one.origin
-        if flagged := [key for key in t.assumed if key not in ("axes.alpha", "axes.beta")]:
-            own["assumed"], words["assumed"] = flagged, "accepted, not stated by the source; what hangs on it says so"
-        if held := _held(t):
-            own["constant"], words["constant"] = held, "one number throughout, while the speed varied"
-        made_with = t.raw.stated.get("conditions.density")
-        if made_with is not None and not made_with.offered and isinstance(made_with.value, float):
-            own["forces_density"], words["forces_density"] = made_with.value, f"stated: {made_with.place}"
-        if HALF_MODEL in t.settings and len(set(map(str, halves))) > 1:
-            one = t.settings[HALF_MODEL]
-            own["half_model"], words["half_model"] = one.value, one.origin + _of_half(one.value)
-        if t.settings[POINT_OF].value != common[POINT_OF].value:
-            own["reference_point"], words["reference_point"] = t.settings[POINT_OF].value, t.settings[POINT_OF].origin
+        keys = own_keys(t, common[POINT_OF].value, len(tables) == 1, len(set(map(str, halves))) > 1, _held(t))
+        own |= {name: content for name, (content, _) in keys.items()}
+        words |= {name: why for name, (_, why) in keys.items()}
         declared.append((own, words))
     content: dict[str, Any] = {k: v for k, v in sections.items() if v}
     content["table"] = [own for own, _ in declared]
@@ -156,6 +142,50 @@ def contents(tables: Sequence[Filled], settings: Settings, source: Path) -> dict
         FILE: _campaign_text(sections, comments, declared, tables, source).encode(),
         SAVED: _saved(tables, settings).encode(),
     }
+
+
+def angles_assumed(settings: Settings) -> list[str]:
+    """Angles whose sign was inferred from the force that should follow from it."""
+    angles = (a for a in ("alpha", "beta") if f"axes.{a}" in settings)
+    return [a for a in angles if SLENDER in settings[f"axes.{a}"].origin]
+
+
+def own_keys(
+    t: Filled, point: Any, alone: bool = False, half: bool = True, constant: Mapping[str, float] | None = None
+) -> dict[str, tuple[Any, str]]:
+    """Keys of the ``[[table]]`` of one table, each with what it rests on.
+
+    Parameters
+    ----------
+    t : Filled
+    point : sequence of float
+        The campaign's reference point.
+    alone : bool
+        The campaign has no other table.
+    half : bool
+        Whether it says itself what half of the body it is of.
+    constant : mapping, optional
+        What the test held.
+    """
+    out: dict[str, tuple[Any, str]] = {}
+    for key, one in t.settings.items():
+        section, _, name = key.partition(".")
+        if section == "table" and (alone or key in t.asked or key not in OF_ARMS):
+            at_reference = key == ARM_POINT and one.value == REFERENCE
+            why = f"{one.origin}: the {REFERENCE}" if at_reference else one.origin
+            out[name] = (t.settings[POINT_OF].value if at_reference else one.value), why
+    if flagged := [key for key in t.assumed if key not in ("axes.alpha", "axes.beta")]:
+        out["assumed"] = flagged, "accepted, not stated by the source; what hangs on it says so"
+    if constant:
+        out["constant"] = constant, "one number throughout, while the speed varied"
+    made_with = t.raw.stated.get("conditions.density")
+    if made_with is not None and not made_with.offered and isinstance(made_with.value, float):
+        out["forces_density"] = made_with.value, f"stated: {made_with.place}"
+    if half and HALF_MODEL in t.settings:
+        out["half_model"] = (which := t.settings[HALF_MODEL]).value, which.origin + _of_half(which.value)
+    if t.settings[POINT_OF].value != point:
+        out["reference_point"] = t.settings[POINT_OF].value, t.settings[POINT_OF].origin
+    return out
 
 
 def _of_half(half: bool | str) -> str:
@@ -171,10 +201,9 @@ def _require_one(tables: Sequence[Filled], common: Settings) -> None:
     """Refuse tables that count places from two points of the body."""
     for t in tables:
         if str(t.settings["axes.datum"].value) != str(common["axes.datum"].value):
-            raise InputError(
-                f"axes.datum {shown(str(t.settings['axes.datum'].value))} of {t.name}, {shown(str(common['axes.datum'].value))} of others",
-                "one point that all places count from", column="axes.datum",
-                advice=f"Say the point of {t.name} from the other one: {t.name}/axes.reference_point=X.",
+            raise input_error(
+                "tables.another_datum", column="axes.datum", own=shown(str(t.settings["axes.datum"].value)), name=t.name,
+                other=shown(str(common["axes.datum"].value)),
             )  # fmt: skip
 
 

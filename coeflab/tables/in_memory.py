@@ -11,15 +11,15 @@ import numpy as np
 
 from coeflab.core.declarations import validated
 from coeflab.core.errors import InputError, shown
+from coeflab.core.texts import input_error
 from coeflab.core.units import parse_header
 from coeflab.core.wording import Verbatim
 from coeflab.tables.campaign import FILE, CampaignFile, campaign_of
-from coeflab.tables.evidence import SLENDER
 from coeflab.tables.force_table import ForceTable
-from coeflab.tables.imported import Filled
+from coeflab.tables.imported import Filled, angles_assumed, own_keys
 from coeflab.tables.mapping import mapped_table
-from coeflab.tables.raw_table import HALF_MODEL, RawColumn, RawTable
-from coeflab.tables.settings import ARM_POINT, OF_ARMS, REFERENCE, SECTIONS, Settings
+from coeflab.tables.raw_table import RawColumn, RawTable
+from coeflab.tables.settings import SECTIONS, Settings
 from coeflab.tables.words.points import POINT_OF
 
 NOWHERE = "<no file>"
@@ -42,12 +42,10 @@ def raw_of_columns(columns: Mapping[str, Any], name: str) -> RawTable:
     """
     result = [_column(str(header), columns[header], name) for header in columns]
     if not result:
-        raise InputError("no column", 'arrays by their headers, such as "Y [N]"', file=name)
+        raise input_error("tables.no_arrays", name)
     sizes = {c.name: len(c.values) for c in result}
     if len(set(sizes.values())) > 1:
-        raise InputError(
-            f"columns of {', '.join(f'{n} ({k})' for n, k in sizes.items())} rows", "columns of equal length", file=name
-        )
+        raise input_error("tables.unequal_columns", name, items=", ".join(f"{n} ({k})" for n, k in sizes.items()))
     rows = next(iter(sizes.values()))
     if not rows:
         raise InputError("no rows", "rows of numbers", file=name)
@@ -88,9 +86,9 @@ def tables_of(filled: Sequence[Filled]) -> tuple[ForceTable, ...]:
     first = filled[0].settings
     for t in filled:
         if str(t.settings["axes.datum"].value) != str(first["axes.datum"].value):
-            raise InputError(
-                f"places from {shown(str(t.settings['axes.datum'].value))} and from {shown(str(first['axes.datum'].value))}",
-                "one point that all places count from", column="axes.datum",
+            raise input_error(
+                "tables.two_datums", column="axes.datum", one=shown(str(t.settings["axes.datum"].value)),
+                other=shown(str(first["axes.datum"].value)),
             )  # fmt: skip
         common = {**t.settings, POINT_OF: first[POINT_OF]}
         file = validated(CampaignFile, _declared(common, t))
@@ -107,21 +105,11 @@ def _declared(settings: Settings, t: Filled) -> dict[str, Any]:
     sections: dict[str, dict[str, Any]] = {name: {} for name in SECTIONS}
     for key, one in settings.items():
         section, _, name = key.partition(".")
-        if section == "table" and key in OF_ARMS and key not in t.asked:
-            continue
-        at_reference = key == ARM_POINT and one.value == REFERENCE
-        sections[section][name] = t.settings[POINT_OF].value if at_reference else one.value
-    angles = ("alpha", "beta")
-    if assumed := [a for a in angles if f"axes.{a}" in settings and SLENDER in settings[f"axes.{a}"].origin]:
+        sections[section][name] = one.value
+    if assumed := angles_assumed(settings):
         sections["axes"]["assumed"] = assumed
-    own = {"file": t.file.removesuffix(".csv"), **sections.pop("table")}
-    if t.settings[POINT_OF].value != settings[POINT_OF].value:
-        own["reference_point"] = t.settings[POINT_OF].value
-    if flagged := [key for key in t.assumed if key not in ("axes.alpha", "axes.beta")]:
-        own["assumed"] = flagged
-    if HALF_MODEL in t.settings:
-        own["half_model"] = t.settings[HALF_MODEL].value
-    made_with = t.raw.stated.get("conditions.density")
-    if made_with is not None and not made_with.offered and isinstance(made_with.value, float):
-        own["forces_density"] = made_with.value
-    return {name: keys for name, keys in sections.items() if keys} | {"table": [own]}
+    own = {name: value for name, (value, _) in own_keys(t, settings[POINT_OF].value).items()}
+    sections.pop("table")
+    return {name: keys for name, keys in sections.items() if keys} | {
+        "table": [{"file": t.file.removesuffix(".csv"), **own}]
+    }

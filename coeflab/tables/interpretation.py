@@ -11,11 +11,15 @@ import numpy as np
 
 from coeflab.core.axes import Axes
 from coeflab.core.errors import InputError, shown
+from coeflab.core.texts import input_error
 from coeflab.core.units import SI, quantity
 from coeflab.core.wording import listed
 from coeflab.law.symbols import LINEAR
 from coeflab.tables.campaign import Cut, cut_of
+from coeflab.tables.column_company import FEW_STRANGE, PROPELLER, proposals
 from coeflab.tables.column_map import ANGLES, FORCES, WIND, ColumnMap, read_column_map, unturned
+from coeflab.tables.column_names import UNKNOWN, named_as
+from coeflab.tables.columns import columns_of
 from coeflab.tables.evidence import Evidence, across_planes, astern, evidence, turn_of
 from coeflab.tables.force_table import FEWEST_SPEEDS
 from coeflab.tables.level_columns import slopes_by_idle_columns
@@ -34,24 +38,12 @@ from coeflab.tables.mapping import (
     known_as,
     with_unit,
 )
-from coeflab.tables.proposals import (
-    AREA,
-    FEW_STRANGE,
-    PROPELLER,
-    UNKNOWN,
-    Proposal,
-    coefficient_as_said,
-    lacks_sizes,
-    named_as,
-    proposals,
-    taken_as,
-)
+from coeflab.tables.proposals import AREA, Proposal, coefficient_as_said, lacks_sizes, taken_as
 from coeflab.tables.questions import Question, known_sizes, questions
 from coeflab.tables.raw_table import HALF_MODEL, RawColumn, RawTable
 from coeflab.tables.settings import EXTRA, OF_ARMS, SYMMETRY, VISCOSITY, Setting, Settings, frame_of, read_setting
 from coeflab.tables.settings_in_files import against_words, overruled
 from coeflab.tables.time_record import IDENTIFY, clock, record_over_time
-from coeflab.tables.to_frd import columns_of
 from coeflab.tables.vocabulary import folded, vocabulary
 from coeflab.tables.words.axes import BODY_AXES, TURN_OF_R
 
@@ -246,9 +238,8 @@ def _no_table(raw: RawTable, offers: Sequence[Proposal]) -> InputError | None:
     roles = {o.role for o in offers}
     strange = [c.name for c, o in zip(raw.columns, offers, strict=True) if o.why.startswith(UNKNOWN)]
     if "force" in roles and not roles & {*SETTINGS} and len(strange) > FEW_STRANGE:
-        return InputError(
-            f"forces, and no angle, speed or rate by its name: {listed([shown(n) for n in strange[:MOST_IDLE]])}", "forces over settings",
-            file=raw.path, advice=f'Name what was varied: --map "{strange[0]}=beta [deg]"; grids at one setting are no sweep.',
+        return input_error(
+            "tables.forces_without_settings", raw.path, names=listed([shown(n) for n in strange[:MOST_IDLE]]), first=strange[0],
         )  # fmt: skip
     if roles & {"force", "error"} or any(
         "or ignore" in o.why and ALLOWED_FORCES & set(o.why.split(": ")[-1][:1]) for o in offers
@@ -256,7 +247,7 @@ def _no_table(raw: RawTable, offers: Sequence[Proposal]) -> InputError | None:
         return None
     names = listed([shown(c.name) for c in raw.columns[:MOST_IDLE]])
     if "propeller" in roles and any(o.why == PROPELLER for o in offers):
-        return InputError(f"curves of a propeller alone: {names}", "forces of a body over settings", file=raw.path)
+        return input_error("tables.propeller_alone", raw.path, names=names)
     over = clock(raw)
     words = vocabulary()
     unread = {
@@ -269,9 +260,9 @@ def _no_table(raw: RawTable, offers: Sequence[Proposal]) -> InputError | None:
     }
     for found, one in (("in units that are not known", unread), ("with words behind them", worded)) if not over else ():
         if one:
-            return InputError(
-                f"forces {found}: {listed([shown(n) for n in [*one][:MOST_IDLE]])}", "forces over settings, in a unit, of one source",
-                file=raw.path, advice=f'Name those of one source: --map "{next(iter(one.values()))}"; others are ignored.',
+            return input_error(
+                "tables.forces_unread", raw.path, found=found, one=listed([shown(n) for n in [*one][:MOST_IDLE]]),
+                next=next(iter(one.values())),
             )  # fmt: skip
     return InputError(
         over or f"no name of a force{', an angle, a speed or a rate' * (not roles & {*SETTINGS})}: {names}", "forces over settings",
@@ -366,9 +357,8 @@ def _in_vain(
     for lacks, angle in (("drag", ""), ("side", "beta"), ("lift", "alpha")) if wind else ():
         own = {lacks, *("YZ" if angle else "")}
         if names.keys().isdisjoint(own) and (not angle or names.get(angle) in moving):
-            vain.append(InputError(
-                f"{wind} without {lacks}{f' at {angle}' * bool(angle)}", f"a column {lacks}", file=raw.path, column=names[wind],
-                advice="X, Y and Z of the body contain parts of drag, side and lift; C_D0 is part of the slope of Z.",
+            vain.append(input_error(
+                "tables.wind_without", raw.path, column=names[wind], wind=wind, lacks=lacks, more=f" at {angle}" * bool(angle),
             ))  # fmt: skip
     shows = [Evidence("warning: one row: a slope needs several settings. Runs of one sweep are read as one folder")] * (
         len(raw) == 1
@@ -412,9 +402,9 @@ def _two_ways(raw: RawTable, columns: Sequence[Assigned]) -> Iterator[InputError
     named, speeds = (listed([c.column.name for c in some]) for some in (angles, linear))
     alone = len(linear) == 1 and linear[0].said.name == "u"
     way = f"Give --map {shlex.quote(f'{linear[0].column.name}=U [m/s]')} where {speeds} is the speed." * alone
-    yield InputError(
-        f"angles ({named}) and velocities ({speeds})", "one or the other", file=raw.path, column=named,
-        advice=way or "Leave the columns of one kind out: --map COLUMN=ignore.",
+    yield input_error(
+        "tables.angles_and_velocities", raw.path, column=named, named=named, speeds=speeds,
+        way=way or "Leave the columns of one kind out: --map COLUMN=ignore.",
     )  # fmt: skip
 
 
@@ -464,10 +454,7 @@ def _against(shows: Evidence, settings: Settings) -> Evidence:
 
 def _astern(raw: RawTable, back: Assigned, frame: Axes) -> InputError:
     other = "CFD (x aft)" if frame.rotation[0][0] > 0.0 else "FRD or FLU (x forward)"
-    return fault(
-        raw, "u is below zero in every row: in these axes the body moves astern", "u above zero", back.column,
-        f"Is the frame {other}? A test astern is read in place, by [columns] of its campaign.toml.",
-    )  # fmt: skip
+    return fault("tables.moves_astern", raw, back.column, other=other)
 
 
 def _possible(raw: RawTable, said: Mapping[str, ColumnMap]) -> Iterator[Assigned]:

@@ -6,21 +6,24 @@ import difflib
 import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from coeflab.core.errors import InputError, UnitsError, shown, together
 from coeflab.core.limits import LARGEST_NUMBER
+from coeflab.core.texts import input_error
 from coeflab.core.types import Array, brief
-from coeflab.core.units import factor
+from coeflab.core.units import factor, fits
 from coeflab.core.wording import Verbatim, listed
 from coeflab.tables.campaign import Campaign, TableDeclaration
 from coeflab.tables.column_map import EXAMPLES, OPEN_SIZES, PER, WORDS, ColumnMap, read_column_map, share, unturned
+from coeflab.tables.columns import Columns
 from coeflab.tables.force_table import ForceTable
 from coeflab.tables.importers import IMPORTERS
 from coeflab.tables.raw_table import RawColumn, RawTable
-from coeflab.tables.to_frd import BLANK, SAME_DENSITY, Columns, force_table, speed_of_rows
+from coeflab.tables.to_frd import BLANK, SAME_DENSITY, force_table, speed_of_rows
 from coeflab.tables.words.axes import BODY_AXES
 
 SETTINGS = ("angle", "velocity", "control", "speed", "radius", "density")
@@ -123,7 +126,7 @@ def assigned(raw: RawTable, mapping: Mapping[str, ColumnMap], whole: bool = True
         if given.name not in ("label", "ignore"):
             if given.plain in taken:
                 found = f"{shown(taken[given.plain])} and {shown(column.name)} as {given.plain}"
-                complaints.append(fault(raw, found, "one of them", column))
+                complaints.append(fault("tables.two_columns_of_a_name", raw, column, found=found))
             taken[given.plain] = column.name
         if given.name == "ignore":
             continue
@@ -136,9 +139,9 @@ def assigned(raw: RawTable, mapping: Mapping[str, ColumnMap], whole: bool = True
         near = difflib.get_close_matches(name, [c.name for c in raw.columns], n=1)
         have = ", ".join(shown(c.name) for c in raw.columns[:MOST_NAMED])
         complaints.append(
-            InputError(
-                f"no column {shown(name)}", f"one of {have}", file=raw.path, line=raw.header_line or None,
-                advice=f"Did you mean {shown(near[0])}?" if near else "",
+            input_error(
+                "tables.no_such_column", raw.path, raw.header_line or None, name=shown(name), have=have,
+                near=f"Did you mean {shown(near[0])}?" if near else "",
             )
         )  # fmt: skip
     if not any(a.said.role == "force" for a in out) and not complaints:
@@ -148,22 +151,15 @@ def assigned(raw: RawTable, mapping: Mapping[str, ColumnMap], whole: bool = True
     return tuple(out)
 
 
-def fault(
-    raw: RawTable, found: str, expected: str, column: RawColumn, advice: str = "", row: int | None = None
-) -> InputError:
+def fault(code: str, raw: RawTable, column: RawColumn, row: int | None = None, **facts: Any) -> InputError:
     """An error about a column of the file, or one cell of it, to be raised by the caller."""
     line = raw.header_line if row is None else int(raw.lines[row]) if len(raw.lines) else row + 1
-    if raw.path.is_dir():
-        line = 0
-        found = f"{found} in {row_name(raw, row)}" if row is not None else found
-    return InputError(found, expected, file=raw.path, line=line or None, column=header(column), advice=advice)
+    where = f" in {row_name(raw, row)}" if row is not None and raw.path.is_dir() else ""
+    return input_error(code, raw.path, (not raw.path.is_dir() and line) or None, header(column), where=where, **facts)
 
 
 def _unmapped(raw: RawTable, column: RawColumn) -> InputError:
-    return fault(
-        raw, f"the unidentified column {shown(column.name)}", 'what it is, under [columns]', column,
-        f'Such as {shown(column.name)} = "Y [N]", "label" or "ignore"; `coeflab inspect` proposes.',
-    )  # fmt: skip
+    return fault("tables.unidentified_column", raw, column, own=shown(column.name))
 
 
 def with_unit(raw: RawTable, column: RawColumn, said: ColumnMap) -> Assigned:
@@ -176,58 +172,46 @@ def with_unit(raw: RawTable, column: RawColumn, said: ColumnMap) -> Assigned:
     """
     sign = -1.0 if said.negative else 1.0
     if said.name == "cells" and (bad := np.flatnonzero(column.values <= 0.0)).size:
-        raise fault(raw, f"{column.values[bad[0]]:g} cells", "a count above zero", column, row=int(bad[0]))
+        raise fault("tables.no_count_of_cells", raw, column, row=int(bad[0]), values=column.values[bad[0]])
     if said.name in WORDS:
         return Assigned(column, said)
     if not np.any(np.isfinite(column.values)):
         example = f", such as {shown(column.texts[0])}" if column.texts else ""
-        raise fault(raw, f"no number in the whole column{example}", "numbers", column)
+        raise fault("tables.no_number_in_column", raw, column, example=example)
     if said.pure:
         stated = column.unit.strip(" -1")
-        if stated and _factor(stated, said.dimension):
-            raise fault(raw, f"[{column.unit}] in the file", f"a pure number for {said}", column)
+        if fits(stated, said.dimension):
+            raise fault("tables.unit_of_pure_number", raw, column, unit=column.unit, said=said)
         counted = share(column.unit)
         if counted is None and any(ch.isdigit() for ch in stated):
-            raise fault(
-                raw, f"[{column.unit}] in the file", f"[-], [%] or a power of ten such as [1e-3] for {said}", column
-            )
+            raise fault("tables.digits_in_a_unit", raw, column, unit=column.unit, said=said)
         declared = share(said.unit)
         if declared and stated and counted != declared:
             raise fault(
-                raw, f"[{column.unit}] in the file, [{said.unit}] in the mapping", "the same unit", column,
-                f'Leave the unit out to take the file\'s: "{replace(said, unit="-")}".',
-            )  # fmt: skip
+                "tables.two_units", raw, column, unit=column.unit, meant=said.unit, plain=replace(said, unit="-")
+            )
         return Assigned(column, said, sign * (declared or counted or 1.0))
     if said.unit == OPEN_SIZES:
-        raise fault(raw, f"{said}, without an area", f"{said.plain} [{PER[said.dimension]}]", column)
-    own = _factor(column.unit, said.dimension)
+        raise fault(
+            "tables.coefficient_without_area", raw, column, said=said, plain=said.plain, per=PER[said.dimension]
+        )
+    own = factor(column.unit, said.dimension) if fits(column.unit, said.dimension) else None
     unit = said.unit or column.unit
     if not unit or (unit == "-" and not said.unit):
         example = EXAMPLES[said.dimension]
         pure = f"; or {said.plain}' for a prime" if said.role in ("force", "velocity", "error") else ""
         pure += f", {said.plain} [{PER[said.dimension]}] for a coefficient" if said.role in ("force", "error") else ""
         raise fault(
-            raw, "no unit" if not unit else "[-]", f"a unit of {said.dimension}", column,
-            f'Write {shown(column.name)} = "{said} [{example}]" under [columns]{pure}.',
+            "tables.column_of_no_unit", raw, column, found="no unit" if not unit else "[-]", dimension=said.dimension,
+            own=shown(column.name), said=said, example=example, pure=pure,
         )  # fmt: skip
     try:
         size = factor(unit, said.dimension)
     except UnitsError as why:
-        raise fault(raw, why.found, why.expected, column, why.advice) from None
+        raise why.at(raw.path, raw.header_line or None, header(column)) from None
     if said.unit and own is not None and abs(own / size - 1.0) > 1e-9:
-        raise fault(
-            raw, f"[{column.unit}] in the file, [{said.unit}] in the mapping", "the same unit", column,
-            f'Leave the unit out to take the file\'s: "{replace(said, unit="")}".',
-        )  # fmt: skip
+        raise fault("tables.two_units", raw, column, unit=column.unit, meant=said.unit, plain=replace(said, unit=""))
     return Assigned(column, replace(said, unit=unit), sign * size / (said.ship**0.5 or 1.0))
-
-
-def _factor(unit: str, dimension: str) -> float | None:
-    """Factor of a unit that a file writes; None where it is no unit of the dimension."""
-    try:
-        return factor(unit, dimension)
-    except UnitsError:
-        return None
 
 
 def usable_rows(columns: Sequence[Assigned], rows: int) -> NDArray[np.int64]:
@@ -277,7 +261,7 @@ def texts_of(column: RawColumn) -> list[str]:
 def _columns(raw: RawTable, known: Sequence[Assigned], campaign: Campaign) -> Columns:
     rows = usable_rows(known, len(raw))
     if not rows.size:
-        raise InputError("no row with a number in every setting", "rows of numbers", file=raw.path)
+        raise input_error("tables.no_row_with_settings", raw.path)
     given: dict[str, dict[str, Array]] = {r: {} for r in (*SETTINGS, "error", "force", "propeller")}
     primes: dict[str, Array] = {}
     for one in known:
@@ -357,7 +341,9 @@ def doubtful(raw: RawTable, known: Sequence[Assigned]) -> list[frozenset[str]]:
         words.discard("")
         words = words - {ALL} | forces if ALL in words else words
         if strange := sorted(words - names):
-            raise fault(raw, shown(strange[0]), f"{ALL}, or of {', '.join(sorted(names))}", column, row=row)
+            raise fault(
+                "tables.no_column_doubted", raw, column, row=row, strange=shown(strange[0]), all=ALL, names=", ".join(sorted(names)),
+            )  # fmt: skip
         out.append(frozenset(words))
     return out
 
@@ -395,9 +381,9 @@ def another_density(raw: RawTable, known: Sequence[Assigned], density: float) ->
         advice = (
             f"Leave it out, primes are right with {given.value:g}; or turn the forces: --option density={density:g}."
         )
-    return InputError(
-        f"conditions.density = {density:g} kg/m^3", f"{given.value:g}, the density that the forces were computed with "
-        f"({given.place})", file=raw.path, column="conditions.density", advice=advice,
+    return input_error(
+        "tables.another_density", raw.path, column="conditions.density", density=density, value=given.value, place=given.place,
+        advice=advice,
     )  # fmt: skip
 
 
@@ -408,10 +394,8 @@ def another_viscosity(raw: RawTable, viscosity: float) -> InputError | None:
         return None
     if abs(viscosity - given.value) <= SAME_VISCOSITY * abs(given.value):
         return None
-    return InputError(
-        f"conditions.viscosity = {viscosity:g} m^2/s", f"{given.value:g}, the viscosity that the forces were computed with "
-        f"({given.place})", file=raw.path, column="conditions.viscosity",
-        advice="Leave it out: the Reynolds number of the runs is that of their viscosity, right or wrong.",
+    return input_error(
+        "tables.another_viscosity", raw.path, column="conditions.viscosity", viscosity=viscosity, value=given.value, place=given.place,
     )  # fmt: skip
 
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import re
 import warnings
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 from coeflab.core.errors import InputError, shown
 from coeflab.core.limits import CSV_LINE, MONITOR_COLUMNS, MONITOR_NUMBERS
 from coeflab.core.text.bounded import stream_of
+from coeflab.core.texts import input_error
 from coeflab.core.types import Array
 from coeflab.tables.monitor_files import HEAD, decoded, header_cells, lines_of
 from coeflab.tables.raw_table import Ended, RawColumn, RawTable, Stated
@@ -135,19 +136,15 @@ class _Rows:
         self.keep(at, values)
         if len(self.broken) > _MOST_BROKEN + _BROKEN_SHARE * self.count:
             line, found = self.broken[0]
-            raise InputError(
-                found, f"{self.width} numbers as the header names", file=self.path, line=line,
-                advice=f"{len(self.broken)} lines are broken; write the monitor anew.",
-            )  # fmt: skip
+            raise input_error(
+                "tables.broken_lines", self.path, line, found=found, width=self.width, count=len(self.broken)
+            )
 
     def keep(self, at: NDArray[np.int64], values: Array) -> None:
         """Rows by their lines."""
         self.count += len(at)
         if self.count * self.width > MONITOR_NUMBERS:
-            raise InputError(
-                f"more than {MONITOR_NUMBERS:,} numbers", "a monitor of one run", file=self.path, line=int(at[-1]),
-                advice="Write every tenth iteration.",
-            )  # fmt: skip
+            raise input_error("tables.too_many_numbers", self.path, int(at[-1]), monitor_numbers=MONITOR_NUMBERS)
         if self.count > len(self.lines):
             self._lengthen()
         rows = slice(self.count - len(at), self.count)
@@ -223,10 +220,7 @@ class _Rows:
             return None
         cells = self._split(line)
         if line.lstrip().startswith(('"', '("')) and not any(_NUMBER.fullmatch(c) for c in cells):
-            raise InputError(
-                f"another header {shown(squeezed)}", "the columns of the first header", file=self.path, line=number,
-                advice="Split the file where the columns change.",
-            )  # fmt: skip
+            raise input_error("tables.another_header", self.path, number, squeezed=shown(squeezed))
         if len(cells) != self.width:
             self.broken.append((number, f"{len(cells)} cell{'s' * (len(cells) != 1)}"))
             return None
@@ -275,7 +269,7 @@ def _blocks(path: Path, offset: int) -> Iterator[tuple[bytes, bool]]:
                 if not end and b"\r" in rest[:-1]:
                     end = rest[:-1].rfind(b"\r") + 1
                 if not end and len(rest) > BLOCK:
-                    raise InputError(f"no line end in {BLOCK} bytes", "one line an iteration", file=path)
+                    raise input_error("tables.no_line_end", path, block=BLOCK)
                 if end:
                     yield rest[:end], False
                 rest = rest[end:]
@@ -310,10 +304,7 @@ def read_monitor(path: Path, layout: Layout) -> Monitor:
         elif row is not None:
             tail = f"{path.name}:{rows.line}: no line end after the last line, which may be cut: left out"
     if rows.marks == {",", "."}:
-        raise InputError(
-            "decimal points and decimal commas", "one decimal mark", file=path, line=layout.first,
-            advice="Export the monitor anew, without thousands marks.",
-        )  # fmt: skip
+        raise input_error("tables.two_decimal_marks", path, layout.first)
     last = int(rows.lines[rows.count - 1]) if rows.count else layout.first - 1
     cut = [f"{path.name}:{n}: the last line is broken ({found})" for n, found in rows.broken if n > last][:1]
     remarks = [
@@ -388,9 +379,8 @@ def pieced(monitors: Sequence[Monitor], index: int) -> Monitor:
     whole = monitors[0]
     for later in monitors[1:]:
         if later.names != whole.names:
-            raise InputError(
-                f"columns {shown(', '.join(later.names), 200)}", f"those of {whole.path.name}, which it continues",
-                file=later.path, line=later.header_line, advice="Put the files of each run into a folder of their own.",
+            raise input_error(
+                "tables.other_columns", later.path, later.header_line, names=shown(", ".join(later.names), 200), name=whole.path.name,
             )  # fmt: skip
         begins = later.columns[index][0] if len(later) else np.inf
         selected = whole.columns[index] < begins
@@ -431,11 +421,9 @@ def joined(monitors: Sequence[Monitor], index: str) -> Monitor:
                 names.append(name)
                 columns.append(values[rows])
             elif not np.array_equal(values[rows], columns[names.index(name)], equal_nan=True):
-                raise InputError(
-                    f"{shown(name)} in two files with different values", "every monitor of a run once",
-                    file=monitor.path, line=monitor.header_line, column=name,
-                    advice="Put the files of each run into a folder of their own.",
-                )  # fmt: skip
+                raise input_error(
+                    "tables.two_values_in_files", monitor.path, monitor.header_line, name, name=shown(name)
+                )
     crashed = next((m.crashed for m in monitors if m.crashed), "")
     words = tuple(r for m in monitors for r in m.remarks)
     lines = first.lines[np.isin(first.columns[0], common)]
@@ -459,6 +447,11 @@ def how_ended(monitor: Monitor, judged: Sequence[int]) -> tuple[Ended, str]:
             row = int(finite[-1]) + 1 if finite.size else 0
             return Ended.DIVERGED, f"{monitor.at(row)}: {monitor.names[j]} is no number from there to the end"
     return (Ended.CRASHED, monitor.crashed) if monitor.crashed else (Ended.WHOLE, "")
+
+
+def worst_end(ends: Iterable[tuple[Ended, str]]) -> tuple[Ended, str]:
+    """How a run of several monitors ended: diverged before crashed."""
+    return max(ends, key=lambda e: (e[0] is not Ended.WHOLE, e[0] is Ended.DIVERGED))
 
 
 def raw_table(

@@ -17,6 +17,7 @@ from coeflab.core.limits import FOAM_FIELD_BYTES, LARGEST_NUMBER, PATTERN_WORK
 from coeflab.core.text.foam import Foam, FoamCase
 from coeflab.core.text.patterns import PatternProblem, pattern
 from coeflab.core.text.series import opened
+from coeflab.core.texts import input_error
 from coeflab.core.types import Array
 from coeflab.tables.openfoam_forces import is_vector, listed, number
 from coeflab.tables.openfoam_symmetry import MIRRORS
@@ -274,10 +275,7 @@ def rotating_frame(case: FoamCase, wanted: str, body: set[str], known: Mapping[s
         else:
             out.append(_frame(case, part, part, f"MRFProperties, {name}"))
     if len(out) > 1:
-        raise InputError(
-            f"{len(out)} rotating frames", "one that is the motion of the body", file=case.root / "constant/MRFProperties",
-            advice="Give the option rotation=none, and the rates in a list of runs.",
-        )  # fmt: skip
+        raise input_error("tables.several_rotating_frames", case.root / "constant/MRFProperties", count=len(out))
     return out[0] if out else None
 
 
@@ -294,7 +292,7 @@ def _frame(case: FoamCase, part: Foam, speeds: Foam, what: str) -> Frame:
         return Frame(None, f"constant/{what}")
     unit = np.array(axis[0], dtype=float)
     if not np.any(unit):
-        raise InputError("an axis of length zero", "a direction", file=case.root / "constant", column=what)
+        raise input_error("tables.axis_of_no_length", case.root / "constant", column=what)
     turning = float(str(rate)) * unit / np.linalg.norm(unit)
     return Frame((turning, np.array(origin[0], dtype=float)), (omega or rpm or axis)[1])
 

@@ -17,6 +17,7 @@ from coeflab.core.errors import InputError, shown
 from coeflab.core.text.foam import Foam, FoamCase
 from coeflab.core.text.foam_values import is_finite
 from coeflab.core.text.series import read_comments, read_series
+from coeflab.core.texts import input_error
 from coeflab.core.types import Array
 from coeflab.law.symbols import COMPONENTS
 from coeflab.law.transforms import force_transfer
@@ -120,10 +121,7 @@ def _header(file: Path, comments: Sequence[str]) -> tuple[str, int]:
     for line, comment in reversed(list(enumerate(comments, start=1))):
         if comment.lower().startswith("time"):
             return comment[4:], line
-    raise InputError(
-        "no line of column names", '"# Time ..." above the numbers', file=file, line=len(comments) + 1,
-        advice="The importer reads by header and guesses no order of columns.",
-    )  # fmt: skip
+    raise input_error("tables.no_line_of_names", file, len(comments) + 1)
 
 
 def _force_columns(header: str, what: str) -> list[str]:
@@ -177,9 +175,7 @@ def _read_file(case: FoamCase, file: Path, kind: str) -> History:
         columns = _force_columns(header, what)
         which = _sums(columns, "force") | _sums(columns, "moment")
         if not which:
-            raise InputError(
-                shown(header), "columns of forces, such as total_x or forces(pressure viscous)", file=file, line=line
-            )
+            raise input_error("tables.no_columns_of_forces", file, line, header=shown(header))
     series = read_series(file, len(columns) + 1, [[0], *which.values()])
     out.values = dict(zip(["time", *which], series.columns, strict=True))
     place = case.relative(file)
@@ -267,10 +263,7 @@ def added(case: FoamCase, histories: Sequence[History]) -> History:
     out = histories[0]
     for other in histories[1:]:
         if other.is_coefficients or out.is_coefficients or not np.array_equal(out.values["time"], other.values["time"]):
-            raise InputError(
-                f"{out.name} and {other.name}, which have other times or are coefficients", "forces at the same times",
-                file=case.root, column="function",
-            )  # fmt: skip
+            raise input_error("tables.other_times", case.root, column="function", name=out.name, other=other.name)
         if "CofR" in out.facts and "CofR" in other.facts and other.facts["CofR"][0] != out.facts["CofR"][0]:
             moved(other, other.facts["CofR"], out.facts["CofR"])
         for name in [n for n in out.values if n != "time"]:
@@ -310,10 +303,7 @@ def _local_axes(case: FoamCase, part: Foam, file: Path) -> Array | None:
     elif x is not None and y is None and z is not None:
         y = np.cross(z, x)
     if x is None or y is None or not np.any(np.cross(x, y)):
-        raise InputError(
-            "a coordinateSystem whose axes are not two of e1, e2, e3", "axes that are read", file=file,
-            advice="Give it e1 and e3, or CofR in its place: then forces are in the axes of the mesh.",
-        )  # fmt: skip
+        raise input_error("tables.unread_axes", file)
     x = x / np.linalg.norm(x)
     z = np.cross(x, y) / np.linalg.norm(np.cross(x, y))
     return np.array([x, np.cross(z, x), z])

@@ -17,11 +17,8 @@ from coeflab.core.text.foam import FoamCase
 from coeflab.core.text.series import opened
 from coeflab.tables.openfoam_forces import listed
 
-MIRRORS = (
-    "symmetryPlane",
-    "symmetry",
-    "basicSymmetry",
-)  # types of patches on whose other side the image of the flow lies
+# Types of patches on whose other side the image of the flow lies.
+MIRRORS = ("symmetryPlane", "symmetry", "basicSymmetry")
 MOST = 60  # files of one folder
 PROCESSORS = 4  # of them as many are looked at: each names every patch
 _COMMENTS = re.compile(rb"//[^\n]*|/\*.*?\*/", re.DOTALL)
@@ -31,9 +28,8 @@ _LISTED = re.compile(rb"\b(symmetryPlane|symmetry)\s+([A-Za-z_][\w.\-]*)\s*\(\s*
 _HEAD = re.compile(rb'("[^"]*"|[^\s{}();"]+)?\s*\Z')
 _NAME = re.compile(rb"\bname\s+([^\s;{}]+)\s*;")
 _TIME = re.compile(r"\d+(?:\.\d+)?")  # a steady run often keeps its last time alone
-_ALL_KINDS = re.compile(
-    rb"\bprocessor\s*\{\s*type\s+processor"
-)  # a copy of caseDicts/setConstraintTypes: no patch of the case
+# A copy of caseDicts/setConstraintTypes: no patch of the case.
+_ALL_KINDS = re.compile(rb"\bprocessor\s*\{\s*type\s+processor")
 _INCLUDED = re.compile(rb'#include(?:IfPresent)?\s+"([^"$<]+)"')
 
 

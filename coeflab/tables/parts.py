@@ -15,18 +15,20 @@ from typing import Any, TypeVar
 import numpy as np
 
 from coeflab.core.errors import InputError, shown, together
+from coeflab.core.texts import input_error
 from coeflab.core.types import brief
 from coeflab.core.wording import natural
 from coeflab.law.symbols import COMPONENTS
-from coeflab.tables.collect import DOUBTFUL as UNCERTAIN
+from coeflab.tables.column_company import proposals
 from coeflab.tables.conditions import BETWEEN, SETTINGS, SPELT, UNIT_ASKED, NoConditionError, name_pattern
 from coeflab.tables.form import Group, Line
 from coeflab.tables.importers import IMPORTERS
 from coeflab.tables.mapping import texts_of
-from coeflab.tables.proposals import AREA, LENGTH_OF, UNITS_OF, proposals
+from coeflab.tables.proposals import AREA, LENGTH_OF, UNITS_OF
 from coeflab.tables.raw_table import HALF_MODEL, RawColumn, RawTable, SeveralError, Stated
 from coeflab.tables.reading import importer_of, read_groups, read_raw, recognised
 from coeflab.tables.runs import NoRunsError
+from coeflab.tables.runs_table import DOUBTFUL as UNCERTAIN
 from coeflab.tables.settings import Setting
 from coeflab.tables.settings_in_files import stated_settings
 from coeflab.tables.words.points import POINT_FROM, POINT_OF
@@ -133,10 +135,7 @@ def read_parts(
         if not several.choices:
             raise
         if len(several.choices) > MOST:
-            raise InputError(
-                f"{len(several.choices):,} sheets with rows of numbers", f"at most {MOST}", file=path,
-                advice="Say which with --option sheet=NAME,NAME, or sheet = under [importer].",
-            ) from None  # fmt: skip
+            raise input_error("tables.too_many_sheets", path, count=len(several.choices), most=MOST) from None  # fmt: skip
         return _of_sheets(path, name, given, several.choices)
     except NoConditionError as unsaid:
         if given.get("names") or not unsaid.patterns or any(UNIT_ASKED in pattern for pattern in unsaid.patterns):
@@ -262,11 +261,11 @@ def _of_folder(path: Path, options: Mapping[str, Any]) -> tuple[tuple[Part, ...]
     try:
         every = sorted((f for f in path.iterdir() if f.is_file() and f.name[0] != "."), key=lambda f: natural(f.name))
     except OSError as shut:
-        raise InputError(f"a folder that cannot be read ({shut.strerror})", "one that can", file=path) from None
+        raise input_error("tables.shut_folder", path, strerror=shut.strerror) from None
     if absent := [name for name in wanted if name not in [f.name for f in every]]:
-        raise InputError(
-            f"no file {', '.join(map(shown, absent))}", f"of {', '.join(f.name for f in every[:MOST])}", file=path
-        )
+        raise input_error(
+            "tables.no_such_files", path, absent=", ".join(map(shown, absent)), every=", ".join(f.name for f in every[:MOST]),
+        )  # fmt: skip
     own = {key: value for key, value in options.items() if key != "files"}
     for file in (f for f in every if not wanted or f.name in wanted):
         known = [n for n in recognised(file) if IMPORTERS.load(n).raw]
@@ -285,16 +284,10 @@ def _of_folder(path: Path, options: Mapping[str, Any]) -> tuple[tuple[Part, ...]
             else:
                 found.append((f"{file.stem} {part.name}".strip(), part.raw, part.importer, part.options))
         if len(found) > MOST:
-            raise InputError(
-                f"more than {MOST} tables", "a table of means with a row a condition, or runs that an importer knows", file=path,
-                advice="Records over time are averaged first, or read by --as NAME (coeflab formats importers).",
-            )  # fmt: skip
-    if not found:
+            raise input_error("tables.too_many_tables", path, most=MOST)
+    if not found or (wanted and left):
         if left:
-            raise InputError(
-                "no table of forces over settings", "tables with a row a condition, or runs of a solver", file=path,
-                advice=" ".join(f"{text}." for text in left[:5]),
-            )  # fmt: skip
+            raise input_error("tables.folder_without_tables", path, left=" ".join(f"{text}." for text in left[:5]))
         return None
     names = _called([name for name, *_ in found]) if len(found) > 1 else [""]
     taken = dict.fromkeys(raw.path.name for _, raw, _, _ in found)
@@ -362,9 +355,9 @@ def require_parts(keys: Iterable[str], parts: Sequence[Part]) -> None:
         )
         raise together([InputError(shown(key), expected, column="--set") for key in strange])
     if shared := [key for key in keys if "/" in key and not key.rpartition("/")[2].startswith((*SPLIT, "axes.datum"))]:
-        raise together([InputError(
-            f"{shown(key)}: all tables of a campaign share {key.rpartition('/')[2]}", f"of one table alone: {OWN_KEYS}", column="--set",
-            advice=f"Say {key.rpartition('/')[2]} without {key.rpartition('/')[0]}/, or import this table into a campaign of its own.",
+        raise together([input_error(
+            "tables.key_shared_by_tables", column="--set", whole=shown(key), plain=key.rpartition("/")[2], own_keys=OWN_KEYS,
+            table=key.rpartition("/")[0],
         ) for key in shared])  # fmt: skip
 
 
@@ -406,9 +399,9 @@ def joined_tables(parts: Sequence[Part]) -> tuple[Part, ...]:
             for key, one in p.raw.stated.items():
                 before = stated.setdefault(key, replace(one, place=f"{p.name}, {one.place}"))
                 if before.value != one.value:
-                    raise InputError(
-                        f"{before.value} ({before.place}) and {one.value} ({p.name}, {one.place}) for {key}", "one value in tables that are joined",
-                        file=p.raw.path, advice=f"Leave {JOIN} out: they become tables of their own.",
+                    raise input_error(
+                        "tables.two_values_of_joined_tables", p.raw.path, value=before.value, place=before.place, other=one.value,
+                        name=p.name, other_place=one.place, setting=key, join=JOIN,
                     )  # fmt: skip
         columns = []
         for many in zip(*(p.raw.columns for p in own), strict=True):

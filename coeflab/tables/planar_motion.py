@@ -14,6 +14,7 @@ from types import MappingProxyType
 import numpy as np
 
 from coeflab.core.errors import InputError, shown
+from coeflab.core.texts import input_error
 from coeflab.core.types import Array, brief, locked, locked_columns
 from coeflab.core.units import quantity
 from coeflab.law.symbols import COMPONENTS
@@ -70,10 +71,9 @@ class Filter:
         except InputError:
             result = None  # the complaint below names all forms
         if result is None:
-            raise InputError(
-                shown(text), FILTER_WORDS, file=file, column=key,
-                advice="A lag is positive where the record is late, at most 90 deg; a cut-off and a delay carry their unit.",
-            )  # fmt: skip
+            raise input_error(
+                "tables.no_filter_in_words", file, column=key, text=shown(text), filter_words=FILTER_WORDS
+            )
         return result
 
     @classmethod

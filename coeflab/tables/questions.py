@@ -5,13 +5,16 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from enum import Enum, auto
+from functools import cache
+from importlib.resources import files
 from typing import Any
 
 import numpy as np
 
 from coeflab.core.axes import ANGLE_SIGNS, ANYWHERE, parse_axes
 from coeflab.core.provenance import TABLE_KINDS
-from coeflab.core.units import quantity
+from coeflab.core.text.bounded import own_text
+from coeflab.core.text.toml import own_toml
 from coeflab.core.wording import identifier
 from coeflab.law.symbols import ANGULAR, MOMENTS
 from coeflab.tables.campaign import CENTRES, PORT_STARBOARD, SYMMETRIES, UP_DOWN, cut_of
@@ -22,7 +25,7 @@ from coeflab.tables.mapping import Assigned
 from coeflab.tables.proposals import AREA, EITHER, LENGTH_OF, OPEN, UNITS_OF, Proposal
 from coeflab.tables.raw_table import HALF_MODEL, RawTable, Stated
 from coeflab.tables.settings import ARM_POINT, REFERENCE, SYMMETRY, Setting, Settings, frame_of, of_datum
-from coeflab.tables.settings_in_files import arm_by_words, point_by_words
+from coeflab.tables.settings_in_files import arm_by_words, known_length, point_by_words
 from coeflab.tables.words.above import of_the_test
 from coeflab.tables.words.points import CENTRE_FROM, POINT_FROM, POINT_OF, UNSAID
 from coeflab.tables.words.primes import BASIS, SIZES, area_of
@@ -35,11 +38,8 @@ ONCE = "once its unit is said"
 NO_POINT = "forces alone: no point matters"
 ANY_SIGN = "zeros throughout: any sign is right"
 SIGNS = ("axes.alpha", "axes.beta")
-READINGS = {
-    1: ("FRD", "FLU"),
-    -1: ("CFD", ["aft", "port", "down"]),
-    0: ("FRD", "FLU"),
-}  # by where x points: y to starboard, to port
+# By where x points: y to starboard, to port.
+READINGS = {1: ("FRD", "FLU"), -1: ("CFD", ["aft", "port", "down"]), 0: ("FRD", "FLU")}
 
 
 class Basis(Enum):
@@ -99,6 +99,18 @@ class Question:
         return not (self.default or self.shown)
 
 
+@cache
+def _words() -> dict[str, dict[str, Any]]:
+    return own_toml(own_text(files("coeflab.tables.words") / "questions.toml"))
+
+
+def _asked(key: str, default: str = "", words: str = "", **facts: object) -> Question:
+    """A question in the words of words/questions.toml, those of its key or others; facts stand in their braces."""
+    own = _words()[words or key]
+    worded: dict[str, Any] = {n: v.format_map(facts) if isinstance(v, str) else v for n, v in own.items()}
+    return Question(key, default=default, **worded)
+
+
 def questions(
     raw: RawTable, columns: Sequence[Assigned], settings: Settings, shows: Sequence[Evidence] = (),
     likely: Sequence[str] = (), offers: Sequence[Proposal] = (), primes: bool = False,
@@ -143,53 +155,35 @@ def _of_coefficients(raw: RawTable, offers: Sequence[Proposal], settings: Settin
         yield _of_basis(raw, settings, primes)
     if any(f"L={OPEN}" in text for text in texts):
         length = settings.get("scaling.length")
-        yield Question(
-            LENGTH_OF, "Length of the coefficients of moments, by 1/2 rho U^2 A L, such as 4.26 m; none where they are primes", "",
-            "" if length is None else str(length.value), "the length of the primes", "not stated", "as scaling.length", assumed=True,
-            basis=Basis.UNSTATED,
-        )  # fmt: skip
+        yield replace(_asked(LENGTH_OF, "" if length is None else str(length.value)), basis=Basis.UNSTATED)
     if any(map(without_unit, offers)):
         both = sorted({one.why.rpartition("; ")[2] for one in offers if one.why.endswith(EITHER)})
-        yield Question(
-            UNITS_OF, "Unit of the columns that state none, or two: SI is N, N m, m/s, rad/s and m, US lbf, lbf ft, ft/s and ft; another one "
-            "column by column, such as Fy=Y [kN], and Fy=Y' [-] for a prime",
-            "; ".join([*both, "SI (N, N m, m/s, rad/s) or US (lbf, lbf ft, ft/s) for all; or Fy=Y [kN]"]),
-        )  # fmt: skip
+        yield _asked(UNITS_OF, both="".join(f"{each}; " for each in both))
 
 
 def _of_basis(raw: RawTable, settings: Settings, primes: bool) -> Question:
     """What coefficients and primes were divided by: by words over the table, else by the names of primes; always to be confirmed."""
-    asks = (
-        "Area that the source divided by, beside 1/2 rho U^2 (moments: area and length), such as 0.2 m^2; or prime: L^2 by "
-        "scaling.length, moments L^3"
-    )
-    choices = "area that they were divided by, such as 0.2 m^2; or prime: L^2 by scaling.length"
+    asked = _asked(AREA)
     given = raw.stated.get(BASIS)
     sizes, places = known_sizes(raw, settings)
     if given is not None and not given.contradicted:
         basis = str(given.value)
         area = area_of(basis, sizes)
         if basis == "L L":
-            return Question(AREA, asks, choices, "prime", given.place, given.place, grave=True)
+            return replace(asked, default="prime", why=given.place, short=given.place, grave=True)
         if area is not None:
             sources = dict.fromkeys([given.place, *(places[f] for f in basis.split() if f in places)])
             why = "; ".join(sources)
-            return Question(AREA, asks, choices, f"{area:.12g} m^2", why, f"{basis}: {why}", grave=True)
+            return replace(asked, default=f"{area:.12g} m^2", why=why, short=f"{basis}: {why}", grave=True)
         if "L" in basis.split() and "L" not in sizes and area_of(basis, {**sizes, "L": 1.0}) is not None:
-            return Question(
-                AREA, asks, choices, "", given.place, f"{basis}: {given.place}", f"{basis}, once L is said", grave=True
-            )
-        return Question(AREA, asks, f"{given.place}: {basis}, in m^2; {choices}", grave=True)
+            later = f"{basis}, once L is said"
+            return replace(asked, why=given.place, short=f"{basis}: {given.place}", shown=later, grave=True)
+        return replace(asked, choices=f"{given.place}: {basis}, in m^2; {asked.choices}", grave=True)
     areas = [p for name, p in places.items() if name in ("wetted", "frontal", "lateral")]
     if given is not None or (primes and areas):
         named = given.contradicted if given is not None else "; ".join(areas)
-        return Question(AREA, asks, f"{named}; {choices}", grave=True)
-    if not primes:
-        return Question(AREA, asks, choices)
-    return Question(
-        AREA, asks, choices, "prime", "its name alone: 1/2 rho U^2 L^2 (moments L^3), which no word of the source says",
-        "by its name: L^2 (moments L^3); no word says so", grave=True, assumed=True,
-    )  # fmt: skip
+        return replace(asked, choices=f"{named}; {asked.choices}", grave=True)
+    return replace(asked, **_words()["by_name"]) if primes else asked
 
 
 def known_sizes(raw: RawTable, settings: Settings) -> tuple[dict[str, float], dict[str, str]]:
@@ -198,9 +192,8 @@ def known_sizes(raw: RawTable, settings: Settings) -> tuple[dict[str, float], di
     for name, key in SIZES.items():
         if (one := raw.stated.get(key)) is not None and isinstance(one.value, float):
             sizes[name], places[name] = one.value, one.place
-    length: Setting | Stated | None = settings.get("scaling.length") or raw.stated.get("scaling.length")
-    if length is not None and not getattr(length, "contradicted", ""):
-        sizes["L"] = quantity(length.value, "length")
+    if (length := known_length(raw, settings)) is not None:
+        sizes["L"] = length
     if (area := raw.stated.get(AREA)) is not None and area.offered and isinstance(area.value, float):
         sizes["area"], places["area"] = area.value, area.place
     return sizes, places
@@ -212,11 +205,8 @@ def _of_axes(
     frame, (ahead, seen) = frame_of(settings), along_x(columns)
     pairs = {1: "FRD (y stb, z down) or FLU (y port, z up)", -1: "CFD (y stb, z up) or aft,port,down",
              0: "FRD, FLU, CFD or such as aft,port,down"}  # fmt: skip
-    yield Question(
-        "axes.frame", "Axes of the forces: FRD (x forward, y starboard, z down), FLU (x forward, y port, z up), CFD (x aft, y "
-        f"starboard, z up), or three directions such as aft,port,down{seen and f'. {seen}'}. No number of the table shows the side of y",
-        pairs[ahead] + (f": {seen}" if seen else ""), grave=True,
-    )  # fmt: skip
+    pair = pairs[ahead] + (f": {seen}" if seen else "")
+    yield _asked("axes.frame", seen=seen and f". {seen}", pair=pair)
     angles = [c.said.name for c in columns if c.said.role == "angle"]
     follows = {e.key: e for e in shows if e.key}
     for name in dict.fromkeys((*angles, *(name for name in likely if ROLES[name] == "angle"))):
@@ -234,7 +224,6 @@ def _of_axes(
                 basis=Basis.ZEROS,
             )
             continue
-        text = f"Sign of {name}: {' or '.join(ANGLE_SIGNS[name])}, {side}, whatever the axes are; or just + or -"
         both = [_signs(columns, name, reading) for reading in READINGS[ahead]] if frame is None else []
         shown, short = "", ""
         if not found and len(both) == 2 and all(both):
@@ -248,10 +237,15 @@ def _of_axes(
         force = {"beta": "Y", "alpha": "Z"}[name]
         unclear = frame is not None and not found and any(c.said.name == force and not c.said.error for c in columns)
         why = f"; {force} over {name} shows no clear sign: too few rows, or a wrong reading" if unclear else ""
-        yield Question(
-            f"axes.{name}", text, f"+ or -: {' or '.join(ANGLE_SIGNS[name])}{why}", found.value if found else "",
-            found.text if found else "", f"assumed: {'Yv' if name == 'beta' else 'Zw'}' < 0" if found else short, shown, grave=True,
-        )  # fmt: skip
+        asked = _asked(
+            f"axes.{name}", words="sign", angle=name, formulas=" or ".join(ANGLE_SIGNS[name]), side=side, unclear=why
+        )
+        damps = f"assumed: {'Yv' if name == 'beta' else 'Zw'}' < 0"
+        yield (
+            replace(asked, default=found.value, why=found.text, short=damps)
+            if found
+            else replace(asked, short=short, shown=shown)
+        )
 
 
 def _signs(columns: Sequence[Assigned], angle: str, reading: Any) -> str:
@@ -268,8 +262,8 @@ def _holds_anywhere(columns: Sequence[Assigned], likely: Sequence[str]) -> bool:
 def _of_points(raw: RawTable, settings: Settings, anywhere: bool) -> Iterator[Question]:
     at, frame, datum = raw.stated.get(POINT_OF), frame_of(settings), settings.get("axes.datum")
     own = at.value if at and isinstance(at.value, tuple) and len(at.value) == 3 else None
-    asks = f"Point that the moments are about: {PLACE_ASKED}; or a point by its name: midship, cg, nose"
-    choices = "x from a point: -2.1 from nose; or midship, cg"
+    asked = _asked(POINT_OF, place=PLACE_ASKED)
+    asks, choices = asked.asks, asked.choices
     here, why, short, shown = "", "", "", ""
     text, point, x = point_by_words(raw, settings)
     words = raw.stated.get(POINT_FROM)
@@ -296,32 +290,21 @@ def _of_points(raw: RawTable, settings: Settings, anywhere: bool) -> Iterator[Qu
     elif datum is not None or given is not None:
         here, why, short = "0, 0, 0", "the datum itself", "the datum itself"
     elif anywhere and POINT_OF not in settings:
-        yield Question(POINT_OF, asks, "", "0, 0, 0", ANYWHERE.note, NO_POINT, harmless=True)
-        yield Question(
-            "axes.datum",
-            "Point of the body that places count from",
-            "",
-            ANYWHERE.id,
-            ANYWHERE.note,
-            NO_POINT,
-            harmless=True,
-        )
+        for key, default in ((POINT_OF, "0, 0, 0"), ("axes.datum", ANYWHERE.id)):
+            plain = _asked(key, default, place=PLACE_ASKED)
+            yield replace(plain, choices="", why=ANYWHERE.note, short=NO_POINT, harmless=True, grave=False)
         return
     unsaid = why == "the datum itself" or why.endswith(UNSAID_IN_WORDS)
-    yield Question(POINT_OF, asks, choices, here, why, short, shown, grave=True, assumed=unsaid)
-    asks = "Point of the body that places count from: nose, cg, midship ..."
+    yield replace(asked, asks=asks, choices=choices, default=here, why=why, short=short, shown=shown, assumed=unsaid)
+    origin = _asked("axes.datum", f"origin_{identifier(raw.path.resolve().stem)}"[:40], "origin")
     if own is not None:
-        origin = f"origin_{identifier(raw.path.resolve().stem)}"[:40]
-        yield Question(
-            "axes.datum", asks, "", origin, "the origin of the file's axes", "origin of the file's axes", grave=True
-        )
+        yield origin
     elif by_words and words is not None and not words.contradicted:
-        yield Question("axes.datum", asks, "", point, words.place, words.place, grave=True)
+        yield replace(origin, default=point, why=words.place, short=words.place)
     else:
         follows = "" if POINT_OF in settings else "as the point says"
-        yield Question(
-            "axes.datum", asks, "nose, midship, cg ...", shown=follows, short="-2.1 from nose: nose", grave=True
-        )
+        shorts = "nose, midship, cg ...", "-2.1 from nose: nose"
+        yield replace(origin, default="", shown=follows, choices=shorts[0], why="", short=shorts[1])
 
 
 def _of_halves(raw: RawTable, settings: Settings, shows: Sequence[Evidence]) -> Iterator[Question]:
@@ -329,19 +312,11 @@ def _of_halves(raw: RawTable, settings: Settings, shows: Sequence[Evidence]) -> 
     half = settings.get(HALF_MODEL)
     across = "; ".join(e.text for e in shows if e.key == HALF_MODEL)
     if HALF_MODEL in raw.stated or across or half is not None:
-        yield Question(
-            HALF_MODEL, "Half of the body, whose forces are doubled: upper or lower of a cut at z = 0 (X, Y, N; Z, K, M are left out), "
-            "starboard or port of one at y = 0 (X, Z, M; Y, K, N are left out). false: the forces are of the whole body, as they are "
-            "doubled already or no symmetry plane cuts the body", f"{across}{'; ' * bool(across)}starboard or port (y = 0), "
-            "upper or lower (z = 0): forces are doubled; false: forces are doubled already, or the patch does not cut the body", grave=True,
-        )  # fmt: skip
+        yield _asked(HALF_MODEL, across=f"{across}{'; ' * bool(across)}")
     cut = cut_of(half.value) if half is not None else None
     if cut is not None and cut.symmetry == UP_DOWN:
-        yield Question(
-            SYMMETRY, f"What the body is exactly: {', '.join(SYMMETRIES)}; half of one cut at {cut.plane} is {UP_DOWN}. A body that "
-            f"is {PORT_STARBOARD} too needs runs of one side only", f"{UP_DOWN}; or {UP_DOWN}, {PORT_STARBOARD}", UP_DOWN,
-            f"a body that is cut at {cut.plane}", f"cut at {cut.plane}; add {PORT_STARBOARD} where it holds", grave=True,
-        )  # fmt: skip
+        names = ", ".join(SYMMETRIES)
+        yield _asked(SYMMETRY, UP_DOWN, plane=cut.plane, symmetries=names, up_down=UP_DOWN, sides=PORT_STARBOARD)
 
 
 def _of_sizes(columns: Sequence[Assigned], settings: Settings, likely: Sequence[str]) -> Iterator[Question]:
@@ -353,15 +328,11 @@ def _of_sizes(columns: Sequence[Assigned], settings: Settings, likely: Sequence[
     plain = not any(c.said.role == "velocity" and not c.said.primed for c in columns)
     length = next((given.length for given in forces if given.length), 0.0)
     far = _from_the_nose(settings)
-    beyond = f"the reference point lies {far:g} m from the nose, further than the {length:g} m of the coefficients"
+    beyond = f"the reference point lies {far:g} m from the nose, further than the {length:g} m of the coefficients; "
     beyond, length = (beyond, 0.0) if 0.0 < length < far else ("", length)
-    yield Question(
-        "scaling.length", "Length of the primes, m, with its name: 4.3 m LOA. Y' = Y / (1/2 rho U^2 L^2), N' with L^3, r' = r L / U",
-        f"{beyond}; m, with its name: 4.3 m LOA".removeprefix("; "), f"{length!r}" if length else "", "that of the coefficients", "that of the coefficients",
-        assumed=bool(length),
-    )  # fmt: skip
-    yield Question("scaling.length_name", "Which length that is: LBP, LOA ... Results of different names are not mixed", "",
-                   "L", "not stated", "not stated: LOA, LBP ...", harmless=True, basis=Basis.UNSTATED)  # fmt: skip
+    asked = _asked("scaling.length", f"{length!r}" if length else "", beyond=beyond)
+    yield replace(asked, assumed=bool(length))
+    yield replace(_asked("scaling.length_name", "L"), basis=Basis.UNSTATED)
     median = {role: _median(columns, role) for role in ("speed", "density")}
     if (
         not median["speed"]
@@ -369,22 +340,14 @@ def _of_sizes(columns: Sequence[Assigned], settings: Settings, likely: Sequence[
     ):
         half = float(np.nanmedian(np.abs(u.values))) if np.any(u.values) else 0.0
         median["speed"] = f"{half:.12g}" if half else ""  # most rows of one velocity at a time stand still along x
-    for role, asks, choices, cancels in (
-        ("density", "Density of the water, kg/m^3", "kg/m^3: 998.2 fresh, 1025 sea", "1000" if pure else ""),
-        ("speed", "Speed, m/s", "m/s", "1" if pure and plain else ""),
-    ):
+    for role, cancels in (("density", "1000" if pure else ""), ("speed", "1" if pure and plain else "")):
         found = median[role]
         follows = not found and not cancels and {"speed": "U"}.get(role, role) in likely
-        why = (
-            f"median of the column of {role}"
-            if found
-            else "it cancels: forces and motions are pure numbers"
-            if cancels
-            else ""
-        )
-        yield Question(
-            f"conditions.{role}", asks, choices, found or cancels, why, why.partition(":")[0] or ONCE * follows,
-            "median of its column" * follows, harmless=bool(found),
+        cancelled = "it cancels: forces and motions are pure numbers" if cancels else ""
+        why = f"median of the column of {role}" if found else cancelled
+        yield replace(
+            _asked(f"conditions.{role}", found or cancels), why=why, short=why.partition(":")[0] or ONCE * follows,
+            shown="median of its column" * follows, harmless=bool(found),
             basis=Basis.COLUMN if found else Basis.CANCELS if cancels else Basis.ELSEWHERE,
         )  # fmt: skip
 
@@ -406,56 +369,41 @@ def _of_rotation(
     arm = "R" in likely or any(c.said.role == "radius" for c in columns)
     if arm:
         side, why, shown = centre_of(columns, frame_of(settings))
-        yield Question("table.centre", f"Where the centre of the circle lies: {', '.join(CENTRES)}", "starboard or port; +R port if R has a sign",
-                       side, why, "so that Nr' < 0" if side or shown else "", shown, grave=True, assumed=True)  # fmt: skip
+        asked = _asked("table.centre", side, centres=", ".join(CENTRES), why=why)
+        yield replace(asked, short="so that Nr' < 0" if side or shown else "", shown=shown)
         at, later, line = arm_by_words(raw, settings) or (same, "the reference point", "")
-        yield Question(
-            "table.arm_point", f"Where R and U are measured to: {PLACE_ASKED}",
-            f"{line}; x from the datum, m".removeprefix("; "), at, line or "the reference point",
-            line or "the reference point, unless said", later, grave=True, assumed=not line,
-        )  # fmt: skip
+        asked = _asked("table.arm_point", at, "radius", place=PLACE_ASKED, line=f"{line}; " * bool(line))
+        rests = line or "the reference point, unless said"
+        yield replace(asked, why=line or "the reference point", short=rests, shown=later, assumed=not line)
     elif {"q", "r"} & set(likely) or any(np.any(rates[m]) for m in ("q", "r") if m in rates):
         yield _where_still(raw, settings)
     inside: Setting | Stated | None = settings.get("table.contains_inertia")
     if arm or set(ANGULAR) & set(likely) or any(map(np.any, rates.values())):
         by_words = raw.stated.get("table.contains_inertia")
         computed = _is_computed(raw) or _kind(raw, settings, words) == "cfd"
-        yield Question(
-            "table.contains_inertia", "Do the forces contain the model's own inertia: true for a balance on a real rotating arm, "
-            "false for a solver or where it was subtracted", "false (subtracted); true: with inertia.mass, .centre_of_gravity", "false" if computed else "",
-            "a solver gives the force of the fluid alone", "a solver's forces do not", grave=True,
-        )  # fmt: skip
+        yield _asked("table.contains_inertia", "false" if computed else "")
         if inside is None and by_words is not None and not (computed or by_words.contradicted):
             inside = by_words
     if inside is not None and inside.value is True:
-        yield Question("inertia.mass", "Mass of the model, kg", "kg", grave=True)
+        yield _asked("inertia.mass")
         at, place = _centre_of_gravity(raw, settings)
-        yield Question(
-            "inertia.centre_of_gravity", f"Its centre of gravity: {PLACE_ASKED}",
-            f"{'' if at else place}; x from the datum, m, or x, y, z".removeprefix("; "), at, place, place, grave=True,
-        )  # fmt: skip
+        asked = _asked("inertia.centre_of_gravity", at, place=PLACE_ASKED)
+        yield replace(
+            asked, choices=f"{'' if at else place}; {asked.choices}".removeprefix("; "), why=place, short=place
+        )
         # About one axis alone the moment of inertia holds nothing: omega x I omega = 0.
         angles = [c.said.name for c in columns if c.said.role == "angle"] + list(likely)
         if np.any(np.sum([*rates.values()], axis=0) > 1) or (arm and "alpha" in angles):
-            yield Question(
-                "inertia.inertia", "Ix, Iy, Iz about its centre of gravity, kg m^2", "Ix, Iy, Iz, kg m^2", grave=True
-            )
+            yield _asked("inertia.inertia")
 
 
 def _where_still(raw: RawTable, settings: Settings) -> Question:
     """The point that turning rows state no drift for, of a table with a rate: no number of it shows the point."""
     at, later, line = arm_by_words(raw, settings) or ("", "", "")
-    about = (
-        f"Point where beta = 0 (or the stated drift) and U hold: {REFERENCE}, or {PLACE_ASKED}. A point x forward of it drifts with "
-        "v = x r: about a point off it Yr' and Nr' are others by Yv' and Nv'"
-    )
-    choices = f"where beta = 0 and U hold: {REFERENCE}; or x from the datum, m: -2.0 from nose; cg"
-    choices = f"{line}; {choices}".removeprefix("; ")
+    asked = _asked(ARM_POINT, REFERENCE, place=PLACE_ASKED, line=f"{line}; " * bool(line))
     if at or later:
-        return Question(ARM_POINT, about, choices, at, line, line, later if not at else "", grave=True)
-    return Question(
-        ARM_POINT, about, choices, REFERENCE, "assumed: the file does not say it", "assumed", grave=True, assumed=True
-    )
+        return replace(asked, default=at, why=line, short=line, shown=later if not at else "")
+    return replace(asked, assumed=True)
 
 
 def _centre_of_gravity(raw: RawTable, settings: Settings) -> tuple[str, str]:
@@ -488,10 +436,13 @@ def _is_computed(raw: RawTable) -> bool:
 def _of_source(raw: RawTable) -> Iterator[Question]:
     kind = "cfd" if _is_computed(raw) else "unstated"
     why = "files of a solver" if kind == "cfd" else "not stated"
-    yield Question("source.kind", f"What the numbers are: {', '.join(TABLE_KINDS)}", "", kind, why, why, harmless=True,
-                   basis=Basis.UNSTATED if kind == "unstated" else Basis.ELSEWHERE)  # fmt: skip
-    yield Question("source.citation", "Their report, test or person", "", raw.path.resolve().name, "the file's name", "the file's name",
-                   harmless=True)  # fmt: skip
+    yield replace(
+        _asked("source.kind", kind, kinds=", ".join(TABLE_KINDS)),
+        why=why,
+        short=why,
+        basis=Basis.UNSTATED if kind == "unstated" else Basis.ELSEWHERE,
+    )
+    yield _asked("source.citation", raw.path.resolve().name)
 
 
 def _offered(q: Question, raw: RawTable, words: Mapping[str, Any]) -> Question:

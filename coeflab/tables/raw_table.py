@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from enum import StrEnum
 from pathlib import Path
@@ -195,6 +195,11 @@ class Run:
     why: str = ""
     length: float = 0.0
     is_final: bool = False
+
+    @classmethod
+    def empty(cls, path: Path, why: str, files: Sequence[Path] = ()) -> Run:
+        """A run without a row, and what shows it."""
+        return cls(path, path.stem, RawTable(path, (), files=tuple(files) or (path,)), ended=Ended.EMPTY, why=why)
 
     def __post_init__(self) -> None:
         for name in ("conditions", "patches"):

@@ -15,6 +15,7 @@ from coeflab.core.files import readable
 from coeflab.core.text.bounded import stream_of
 from coeflab.core.text.delimited import read_cells
 from coeflab.core.text.model_kinds import model_kind_of
+from coeflab.core.texts import input_error
 from coeflab.core.wording import Verbatim
 from coeflab.tables.campaign import FILE, read_campaign
 from coeflab.tables.conditions import BETWEEN
@@ -84,7 +85,7 @@ def importer_of(path: Path, name: str = "") -> str:
         return name
     readable(path)
     if path.is_file() and path.stat().st_size == 0:
-        raise InputError("an empty file", "a table or runs of a solver", file=path)
+        raise input_error("tables.empty_file", path)
     known = recognised(path)
     if not known and path.is_dir():
         return find_runs(path)[0]
@@ -92,19 +93,11 @@ def importer_of(path: Path, name: str = "") -> str:
         return known[0]
     if not known and (begin := _first_lines(path)):
         if kind := model_kind_of(path):
-            raise InputError(
-                f"{kind}, a simulator's model", "a table or runs of a solver", file=path,
-                advice=f"Read it by: coeflab params check {path}.",
-            )  # fmt: skip
+            raise input_error("tables.model_of_simulator", path, sort=kind, path=path)
         if is_of_openfoam([text for _, text in _first_lines(path, 60)]):
-            raise InputError(
-                "forces of one OpenFOAM case", "the folder of its case, or of all cases of a sweep", file=path
-            )
+            raise input_error("tables.openfoam_file_alone", path)
         others = ", ".join(n for n in readers if n != GENERAL)
-        unread = InputError(
-            "a text that no importer knows by its content", f"--as {GENERAL} if it is a table of text, else one of {others}",
-            file=path, advice=f"{_as_table(path)}Where its names are not found, their line is --option header=NUMBER. Its first lines:",
-        )  # fmt: skip
+        unread = input_error("tables.unknown_text", path, general=GENERAL, others=others, as_table=_as_table(path))
         unread.example = "\n".join(f"  {number:2d}  {text}" for number, text in begin)
         raise unread
     found = f"something that {' and '.join(known)} read" if known else "nothing that an importer knows by its content"
@@ -153,7 +146,7 @@ def read_raw(
     name : str
         Of the importer.
     options : mapping, optional
-        Of the importer; of collected runs also ``names``, ``run_list`` and ``state``, see `coeflab.tables.collect.collect`.
+        Of the importer; of collected runs also ``names``, ``run_list`` and ``state``, see `coeflab.tables.collect.collect_groups`.
     progress : callable, optional
         Is handed a line now and then.
 
@@ -164,17 +157,10 @@ def read_raw(
     """
     importer = IMPORTERS.load(name)
     readable(path)
-    given = dict(options or {})
     with IMPORTERS.guarded(name):
         if importer.raw is not None:
-            return upright(importer.raw(path, given))
-        from coeflab.tables.collect import collect
-
-        names, runs, state = (str(given.pop(option, "")) for option in OF_RUNS)
-        return collect(
-            path, name, options=given, names=names, run_list=Path(runs) if runs else None, progress=progress,
-            state=Path(state) if state else None,
-        ).table  # fmt: skip
+            return upright(importer.raw(path, dict(options or {})))
+    return _of_runs(path, name, options or {}, [str((options or {}).get("names", ""))], progress)[0]
 
 
 def read_groups(
@@ -192,18 +178,25 @@ def read_groups(
     InputError
         As `read_raw`; a run of no pattern, or of two.
     """
-    given = dict(options)
-    with IMPORTERS.guarded(name):
-        names, runs, state = (str(given.pop(option, "")) for option in OF_RUNS)
-        patterns = [text.strip() for text in names.split(BETWEEN)]
-        from coeflab.tables.collect import collect_groups
+    patterns = [text.strip() for text in str(options.get("names", "")).split(BETWEEN)]
+    tables = zip(patterns, _of_runs(path, name, options, patterns, progress), strict=True)
+    return tuple(replace(table, dialect={**table.dialect, "names": pattern}) for pattern, table in tables)
 
+
+def _of_runs(
+    path: Path, name: str, options: Mapping[str, Any], patterns: Sequence[str], progress: Progress | None
+) -> tuple[RawTable, ...]:
+    """A table of the runs of each pattern of names."""
+    from coeflab.tables.collect import collect_groups
+
+    given = {key: value for key, value in options.items() if key not in OF_RUNS}
+    runs, state = (str(options.get(option, "")) for option in OF_RUNS[1:])
+    with IMPORTERS.guarded(name):
         groups = collect_groups(
             path, name, options=given, patterns=patterns, run_list=Path(runs) if runs else None, progress=progress,
             state=Path(state) if state else None,
         )  # fmt: skip
-    tables = zip(patterns, (group.table for group in groups), strict=True)
-    return tuple(replace(table, dialect={**table.dialect, "names": pattern}) for pattern, table in tables)
+    return tuple(group.table for group in groups)
 
 
 def with_declarations(
@@ -234,13 +227,7 @@ def with_declarations(
     read = read_cells(file)
     for column, holds in ((cells, "cell counts that [[table]] cells"), (variant, "studies that [[table]] variant")):
         if column and column not in [h.name for h in read.headers]:
-            raise InputError(
-                f"no column {column}",
-                f"the column of {holds} names",
-                file=file,
-                line=read.first_line - 1,
-                column=column,
-            )
+            raise input_error("tables.no_column_of_study", file, read.first_line - 1, column, head=column, holds=holds)
     if variant:
         table = replace(table, variants=_variants(read, variant)).without_studies()
     if not cells:
@@ -248,9 +235,7 @@ def with_declarations(
     counts = read.numbers(cells)
     bad = np.flatnonzero(counts <= 0.0)
     if bad.size:
-        raise InputError(
-            f"{counts[bad[0]]:g} cells", "a count above zero", file=file, line=read.line(int(bad[0])), column=cells
-        )
+        raise input_error("tables.no_cell_count", file, read.line(int(bad[0])), cells, counts=counts[bad[0]])
     return replace(table, cells=counts).on_one_grid()
 
 
@@ -262,9 +247,9 @@ def _variants(read: Cells, column: str) -> tuple[str, ...]:
         for part in () if text.strip() in ("", MATRIX) else text.split(","):
             name, sign, value = map(str.strip, part.partition("="))
             if name not in STUDIES or not sign or not value or "=" in value:
-                raise InputError(
-                    shown(text), f"blank, {MATRIX}, or what a study changed: {', '.join(f'{n} = ...' for n in STUDIES)}",
-                    file=read.file, line=read.line(row), column=column,
+                raise input_error(
+                    "tables.no_study", read.file, read.line(row), column, text=shown(text), matrix=MATRIX,
+                    studies=", ".join(f"{n} = ..." for n in STUDIES),
                 )  # fmt: skip
             pairs.append(f"{name} = {value}")
         out.append(Verbatim(", ".join(pairs)))
@@ -317,9 +302,8 @@ def read_tables(planned: PlannedTable) -> tuple[ForceTable, ...]:
     found = tuple(t.at_speed(planned.speed) for t in tables)
     if not any(mask.any() for t in found for mask in t.usable.values()):
         have = sorted({round(float(u), 6) for t in tables for u in t.speed})
-        raise InputError(
-            f"no row at {planned.speed:g} m/s", f"one of the speeds {', '.join(f'{u:g}' for u in have[:10])} m/s",
-            file=planned.campaign, column="speed",
+        raise input_error(
+            "tables.no_row_at_speed", planned.campaign, column="speed", speed=planned.speed, have=", ".join(f"{u:g}" for u in have[:10]),
         )  # fmt: skip
     return found
 
@@ -335,43 +319,22 @@ def _every_speed(planned: PlannedTable) -> tuple[ForceTable, ...]:
     path = planned.campaign
     declaration = _declaration(path)
     if not declaration.exists():
-        raise InputError(
-            f"no {FILE} in {declaration.parent}",
-            f"a {FILE} that declares axes, angle sign, reference point and scaling",
-            file=path,
-            advice="`coeflab import PATH --out DIR` asks and writes one; `coeflab new DIR` writes an example.",
-        )
+        raise input_error("tables.no_campaign_toml", path, path=FILE, parent=declaration.parent)
     campaign = read_campaign(declaration)
     importer = IMPORTERS.load(campaign.importer)
     if importer.read is not None:
         if campaign.columns:
-            raise InputError(
-                f"[columns] with importer = {shown(campaign.importer)}", 'importer = "table" or another raw one',
-                file=declaration, column="columns",
-                advice=f"{campaign.importer} reads headers such as Y [N] as they are.",
+            raise input_error(
+                "tables.columns_of_other_importer", declaration, column="columns", importer=shown(campaign.importer),
+                own=campaign.importer,
             )  # fmt: skip
         with IMPORTERS.guarded(campaign.importer):
             return declared(importer.read(campaign, planned.only, campaign.options), campaign)
     if not (importer.raw or importer.run):
-        raise InputError(
-            f"the importer {campaign.importer}", "one that reads tables", file=declaration, column="campaign.importer"
+        raise input_error(
+            "tables.importer_without_tables", declaration, column="campaign.importer", importer=campaign.importer
         )
-    return tuple(_mapped(campaign, table) for table in wanted(campaign, planned.only))
-
-
-def wanted(campaign: Campaign, only: str | None) -> tuple[TableDeclaration, ...]:
-    """The tables of a campaign, or the one of that file name.
-
-    Raises
-    ------
-    InputError
-        No [[table]] has it.
-    """
-    out = tuple(t for t in campaign.tables if only is None or Path(t.file).name == only)
-    if not out:
-        known = ", ".join(t.file for t in campaign.tables)
-        raise InputError(f"no [[table]] for {shown(only)}", f"one of {known}", file=campaign.path, column="table")
-    return out
+    return tuple(_mapped(campaign, table) for table in campaign.wanted(planned.only))
 
 
 def _mapped(campaign: Campaign, table: TableDeclaration) -> ForceTable:

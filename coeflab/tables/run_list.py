@@ -5,7 +5,6 @@ from __future__ import annotations
 import re
 from collections import Counter
 from collections.abc import Mapping, Sequence
-from contextlib import suppress
 from dataclasses import dataclass, replace
 from itertools import takewhile
 from pathlib import Path
@@ -15,10 +14,12 @@ import numpy as np
 from coeflab.core.errors import InputError, UnitsError, shown, together
 from coeflab.core.text.delimited import read_cells
 from coeflab.core.text.toml import read_toml
+from coeflab.core.texts import input_error
 from coeflab.core.types import brief
-from coeflab.core.units import SI, Header, factor
+from coeflab.core.units import SI, Header, factor, fits
 from coeflab.core.wording import listed, repeated
 from coeflab.law.symbols import LINEAR
+from coeflab.tables.column_names import named_as
 from coeflab.tables.conditions import (
     COUNTED,
     DIMENSIONS,
@@ -32,7 +33,6 @@ from coeflab.tables.conditions import (
     in_a_list,
     named,
 )
-from coeflab.tables.proposals import named_as
 from coeflab.tables.vocabulary import one_name
 
 RUN = "run"
@@ -118,9 +118,7 @@ def _csv_list(path: Path) -> RunList:
     of_columns = {header.name: setting_of(header.name) for header in cells.headers}
     for name in repeated(n for n in of_columns.values() if n in DIMENSIONS):
         both = [column for column, n in of_columns.items() if n == name]
-        raise InputError(
-            f"{listed(both)}, both {name} by their names", "one column a setting", file=path, line=cells.first_line - 1
-        )
+        raise input_error("tables.two_columns_of_a_setting", path, cells.first_line - 1, both=listed(both), name=name)
     for header in cells.headers:
         name = of_columns[header.name]
         if name == RUN:
@@ -128,11 +126,14 @@ def _csv_list(path: Path) -> RunList:
         is_label = name not in DIMENSIONS and header.unit is None
         if not is_label:
             _require(header, name, path, cells.first_line - 1)
-            if name not in DIMENSIONS and name not in COUNTED and _is_of_motion(header.unit or ""):
-                raise InputError(
-                    f"a column {shown(header.text)} whose name is no setting", f"one of {', '.join(SETTINGS)}", file=path,
-                    line=cells.first_line - 1, column=header.text,
-                    advice="Rename it; a column that is no setting of the runs has no unit of an angle, speed or rate.",
+            if (
+                name not in DIMENSIONS
+                and name not in COUNTED
+                and any(fits(header.unit or "", d) for d in ("angle", "speed", "rate"))
+            ):
+                raise input_error(
+                    "tables.unit_of_motion_without_setting", path, cells.first_line - 1, header.text, text=shown(header.text),
+                    settings=", ".join(SETTINGS),
                 )  # fmt: skip
         numbers = np.full(len(cells), np.nan) if is_label else cells.numbers(header.name)
         for row, (run, text, number) in enumerate(zip(runs, cells.texts(header.name), numbers, strict=True)):
@@ -151,29 +152,20 @@ def setting_of(name: str) -> str:
     return found if found in DIMENSIONS else plain
 
 
-def _is_of_motion(unit: str) -> bool:
-    """Whether a unit is one of an angle, a speed or a rate."""
-    for dimension in ("angle", "speed", "rate"):
-        with suppress(UnitsError):
-            if factor(unit, dimension):
-                return True
-    return False
-
-
 def _require(header: Header, name: str, path: Path, line: int) -> None:
     dimension = DIMENSIONS.get(name)
     if dimension is None:
         return
     example = SI[dimension] or "-"
     if header.unit is None:
-        raise UnitsError(
-            f"{header.text} without a unit", f"{name} [{'deg' if dimension == 'angle' else example}]", file=path, line=line,
-            column=header.text,
+        raise input_error(
+            "tables.column_without_unit", path, line, header.text, kind=UnitsError, text=header.text, name=name,
+            which="deg" if dimension == "angle" else example,
         )  # fmt: skip
     try:
         factor(header.unit, dimension)
     except UnitsError as why:
-        raise UnitsError(why.found, why.expected, file=path, line=line, column=header.text, advice=why.advice) from None
+        raise why.at(path, line, header.text) from None
 
 
 def _toml_list(path: Path) -> RunList:
@@ -207,7 +199,7 @@ def _toml_condition(name: str, value: object, origin: str, path: Path, line: int
     try:
         return condition_of(float(match[1].replace("\u2212", "-")), match[2].strip(), name, origin)
     except UnitsError as why:
-        raise UnitsError(why.found, why.expected, file=path, line=line, key=name, advice=why.advice) from None
+        raise why.at(path, line, key=name) from None
 
 
 def joined(
@@ -280,9 +272,8 @@ def _other_incidence(run: str, found: dict[str, Condition]) -> list[InputError]:
             if max(by_flow, by_angle) < np.pi / 4 and abs(by_flow - by_angle) > 0.002 + 0.01 * by_angle:
                 words = ", ".join(f"{c} = {found[c]}" for c in (*LINEAR, "alpha", "beta") if c in found)
                 return [
-                    InputError(
-                        f"{words}: {np.degrees(by_flow):.4g} and {np.degrees(by_angle):.4g} degrees to the axis of the flow",
-                        "one incidence", file=run,
+                    input_error(
+                        "tables.two_incidences", run, words=words, by_flow=np.degrees(by_flow), by_angle=np.degrees(by_angle),
                     )
                 ]  # fmt: skip
     for c in LINEAR:
@@ -313,8 +304,8 @@ def required(conditions: Mapping[str, Mapping[str, Condition]], pattern: NamePat
         if runs:
             unfit = pattern and any(pattern.conditions(r) is None for r in runs)
             why = f"The name does not fit {shown(pattern.text)}. {SPELT}. " if pattern and unfit else ""
-            out.append(InputError(
-                f"no {listed(names)} for {named(runs)}", f"them in the files, {sources}, as for the other runs",
-                advice=f"{why}Or {in_a_list(names[0])}. Where they are zero, it says so; or a second --name makes a table of these.",
+            out.append(input_error(
+                "tables.runs_without_setting", names=listed(names), runs=named(runs), sources=sources, why=why,
+                in_a_list=in_a_list(names[0]),
             ))  # fmt: skip
     return out

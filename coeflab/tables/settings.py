@@ -17,6 +17,7 @@ from coeflab.core.declarations import POINT, numbers, one_of, text_of
 from coeflab.core.errors import InputError, shown, together
 from coeflab.core.provenance import TABLE_KINDS
 from coeflab.core.text.toml import read_toml, typed_value
+from coeflab.core.texts import input_error
 from coeflab.core.units import quantity, with_unit
 from coeflab.law.scaling import Scaling, require_hull
 from coeflab.tables import campaign
@@ -215,9 +216,9 @@ def read_setting(key: str, text: Any) -> Any:
     try:
         return READERS.get(key, lambda said: said)(typed)
     except OverflowError:
-        raise InputError(shown(typed), "a number that a length or speed can be", column=key) from None
+        raise input_error("tables.number_beyond_sizes", column=key, typed=shown(typed)) from None
     except InputError as why:
-        raise type(why)(why.found, why.expected, column=key, advice=why.advice) from None
+        raise why.at(column=key) from None
 
 
 _PLACED = re.compile(r"[-+]?\d[^A-Za-z]*(?:(?:mm|cm|m|ft|in(?!\s+front))\b)?")
@@ -256,10 +257,7 @@ def read_settings(key: str, text: str) -> dict[str, Any]:
         and name not in vocabulary().lists["no_length"]
     ):
         if re.match(r"(?:dm|km|yd|feet|foot|inch|inches|met(?:er|re)s?)\b|['′\"″]", name, re.IGNORECASE):
-            raise InputError(
-                shown(text), "a length in m, mm, cm, ft or in, with its name: 4.3 m LOA", column=key,
-                advice="Give it in one of these units.",
-            )  # fmt: skip
+            raise input_error("tables.length_in_another_unit", column=key, text=shown(text))
         return {key: read_setting(key, sized[1].strip()), "scaling.length_name": name}
     return {key: read_setting(key, text)}
 
@@ -291,9 +289,8 @@ def require_one_datum(known: Settings, read: Mapping[str, Any]) -> None:
     new, old = read.get("axes.datum"), known.get("axes.datum")
     own = next((k for k in PLACE_KEYS[1:] if any(key.endswith(k) for key in (*read, *known))), "")
     if own and new is not None and old is not None and not of_datum(str(old.value), str(new)):
-        raise InputError(
-            f"places from {shown(str(old.value))} and from {shown(str(new))}", "one point that all places count from",
-            column=own, advice=f"Say {POINT_OF} and {own} from the same point.",
+        raise input_error(
+            "tables.two_datums_of_places", column=own, one=shown(str(old.value)), other=shown(str(new)), point_of=POINT_OF, own=own,
         )  # fmt: skip
 
 
@@ -308,18 +305,12 @@ def _place_and_datum(typed: str, key: str) -> tuple[str, str]:
     rest = typed[: numbers.start()] + " " + typed[numbers.end() :] if numbers else typed
     words = [w for w in re.split(r"[\s,;:@()]+", rest) if w]
     if numbers and (sided := {w.casefold() for w in words} & vocabulary().lists["sided"]):
-        raise InputError(
-            f"{shown(typed)}, the side as a word", "the side as a sign, x forward: -2.1 from nose is 2.1 m aft of it",
-            column=key, advice=f"Leave out {sided.pop()}.",
-        )  # fmt: skip
+        raise input_error("tables.side_as_a_word", column=key, typed=shown(typed), pop=sided.pop())
     beside = (typed[: numbers.start()], typed[numbers.end() :]) if numbers else ()
     if any(_NO_METRES.search(part) for part in beside) or re.search("['\"′″]", at):
-        raise InputError(
-            f"{shown(typed)}, a place in another unit", f"{PLACE_WANTED}; or -2.1 from nose, -82.7 in from nose",
-            column=key, advice="Give it in m, mm, cm, ft or in, after the last number.",
-        )  # fmt: skip
+        raise input_error("tables.place_in_another_unit", column=key, typed=shown(typed), place_wanted=PLACE_WANTED)
     if "/" in rest or (not numbers and len(words) > 2):
-        raise InputError(shown(typed), f"{PLACE_WANTED}; or -2.1 from nose, midship, cg", column=key)
+        raise input_error("tables.no_place", column=key, typed=shown(typed), place_wanted=PLACE_WANTED)
     return " ".join(w for w in words if w.casefold() not in vocabulary().lists["between"]), at or "0"
 
 

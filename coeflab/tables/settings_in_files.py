@@ -11,7 +11,7 @@ from coeflab.core.axes import parse_axes
 from coeflab.core.errors import InputError
 from coeflab.core.units import quantity
 from coeflab.law.scaling import doubtful_size, doubtful_viscosity, speaks_of_air
-from coeflab.tables.raw_table import RawTable
+from coeflab.tables.raw_table import RawTable, Stated
 from coeflab.tables.settings import (
     ARM_POINT,
     CONFIRMED,
@@ -84,6 +84,9 @@ ADVICE = {
 }
 
 
+BY_WORDS = ("axes.frame", "axes.alpha", "axes.beta", "table.contains_inertia")
+
+
 def _same(key: str, said: Any, stated: Any, settings: Settings) -> bool:
     """Whether a person says of a key what the source states."""
     if key in SIZES or key in ("coefficients.area", "coefficients.length"):
@@ -111,13 +114,7 @@ def against_words(raw: RawTable, settings: Settings) -> list[tuple[str, str, str
             or key.startswith(("source.", "coefficients."))
         ):
             continue
-        if isinstance(words.value, float) and key in SIZES:
-            same = abs(quantity(one.value, SIZES[key]) / words.value - 1.0) <= SAME_SIZE
-        elif key == "axes.frame":
-            same = bool(
-                np.array_equal(parse_axes(one.value).rotation, parse_axes(read_setting(key, words.value)).rotation)
-            )
-        elif key == POINT_FROM:
+        if key == POINT_FROM:
             _, point, x = point_by_words(raw, settings)
             datum = settings.get("axes.datum")
             near = SAME_SIZE * (
@@ -126,14 +123,22 @@ def against_words(raw: RawTable, settings: Settings) -> list[tuple[str, str, str
             same = x is None or datum is None or not of_datum(str(datum.value), point) or abs(one.value[0] - x) <= near
         elif key == "table.centre":
             same = str(words.value) in str(one.value) if not str(one.value).startswith(("+", "-")) else True
-        elif key in ("table.contains_inertia", "axes.alpha", "axes.beta"):
-            same = one.value == words.value
+        elif (key in SIZES and isinstance(words.value, float)) or key in BY_WORDS:
+            same = _same(key, one.value, words.value, settings)
         else:
             continue
         if not same:
             phrases = str(one.value).casefold() if isinstance(one.value, bool) else str(one.value)
             out.append((POINT_OF if key == POINT_FROM else key, phrases, words.place))
     return out
+
+
+def known_length(raw: RawTable, settings: Settings) -> float | None:
+    """The length of the primes, m, as a person or the file says it; None where nobody does, or the file in two ways."""
+    length: Setting | Stated | None = settings.get("scaling.length") or raw.stated.get("scaling.length")
+    if length is None or (isinstance(length, Stated) and length.contradicted):
+        return None
+    return quantity(length.value, "length")
 
 
 def point_by_words(raw: RawTable, settings: Settings) -> tuple[str, str, float | None]:
@@ -146,11 +151,9 @@ def point_by_words(raw: RawTable, settings: Settings) -> tuple[str, str, float |
         return "", "", None
     number, unit, named = str(given.value).split()
     datum = named.rstrip("?")
-    length = settings.get("scaling.length") or raw.stated.get("scaling.length")
-    known = unit == "m" or (length is not None and not getattr(length, "contradicted", ""))
-    if not known:
+    by = 1.0 if unit == "m" else known_length(raw, settings)
+    if by is None:
         return f"{number} L from {datum}", datum, None
-    by = 1.0 if unit == "m" else quantity(length.value, "length")  # type: ignore[union-attr]
     return f"{float(number) * by:.6g} from {datum}", datum, float(f"{float(number) * by:.12g}")
 
 
@@ -169,23 +172,15 @@ def arm_by_words(raw: RawTable, settings: Settings) -> tuple[str, str, str] | No
     if given.contradicted or not given.value:
         return "", "", given.contradicted or given.place
     number, unit, point = str(given.value).split()
-    length = settings.get("scaling.length") or raw.stated.get("scaling.length")
-    by = 1.0
-    if unit == "L":
-        if length is None or (not isinstance(length, Setting) and length.contradicted):
-            return "", "", given.place
-        by = quantity(length.value, "length")
+    by = 1.0 if unit == "m" else known_length(raw, settings)
+    if by is None:
+        return "", "", given.place
     x = float(number) * by
     known, datum = settings.get(POINT_OF), settings.get("axes.datum")
     if point == OF_MOMENTS:
         if known is None:
-            return (
-                "",
-                f"{abs(x):g} m {'forward' if x > 0.0 else 'aft'} of the reference point"
-                if x
-                else "the reference point",
-                given.place,
-            )
+            off = f"{abs(x):g} m {'forward' if x > 0.0 else 'aft'} of " * bool(x)
+            return "", f"{off}the reference point", given.place
         return ", ".join(f"{a + b:.12g}" for a, b in zip(known.value, (x, 0.0, 0.0), strict=True)), "", given.place
     if datum is None:
         return "", f"{x:.12g} from {point}" if x else point, given.place

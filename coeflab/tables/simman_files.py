@@ -14,6 +14,7 @@ from pathlib import Path
 import numpy as np
 
 from coeflab.core.errors import InputError, UnitsError, shown
+from coeflab.core.texts import input_error
 from coeflab.core.types import Array
 from coeflab.core.units import factor
 from coeflab.tables.dialect import is_house_table
@@ -138,9 +139,7 @@ def record(path: Path) -> tuple[Array, dict[str, Array]]:
             continue
         bad = np.flatnonzero(~np.isfinite(values))
         if bad.size:
-            raise InputError(
-                "a cell without a number", "a number", file=path, line=int(monitor.lines[bad[0]]), column=name
-            )
+            raise input_error("tables.cell_without_number", path, int(monitor.lines[bad[0]]), name)
         out[name] = values * factor(unit, DIMENSIONS[name])
     time = next((out.pop(n) for n in TIME if n in out), None)
     if time is None:

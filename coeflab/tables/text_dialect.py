@@ -16,6 +16,7 @@ from coeflab.core.errors import InputError, shown
 from coeflab.core.limits import CSV_LINE, TABLE_COLUMNS
 from coeflab.core.options import bounded, one_of
 from coeflab.core.text.bounded import stream_of
+from coeflab.core.texts import input_error
 from coeflab.tables.dialect import (
     BLANKS,
     ERRORS,
@@ -192,9 +193,7 @@ def first_lines(sample: bytes, whole: bool, encoding: str, path: Path) -> tuple[
 def undecoded(why: UnicodeDecodeError, encoding: str, path: Path) -> InputError:
     """The error of a file that is not in its encoding."""
     byte = why.object[why.start : why.start + 1].hex()
-    return InputError(
-        f"the byte 0x{byte}", f"text in {encoding}", file=path, advice="Say the encoding by the option encoding."
-    )
+    return input_error("tables.byte_of_another_encoding", path, byte=byte, encoding=encoding)
 
 
 Rows = list[Row]
@@ -270,7 +269,7 @@ def _delimiter(kept: list[tuple[int, str]], options: Options, path: Path) -> Fou
         if run[1] and (run[2] > 1 or not delimiter or options.delimiter):
             found.append((delimiter, rows, run, (run[1] - run[0]) * run[3]))
     if not found:
-        raise InputError("no row of numbers in its first lines", "a table", file=path)
+        raise input_error("tables.no_row_of_numbers", path)
     most = max(f[3] for f in found)
     delimiter, rows, run, _ = next(f for f in found if f[3] >= 0.8 * most)
     first, last, width, share = run
@@ -396,11 +395,7 @@ def _head(
             and (delimiter == " " or delimiter in bare)
         ):
             many = len(split_line(bare, delimiter))
-            raise InputError(
-                f"{many} name{'s' * (many != 1)} over rows of {width} cells", "as many names as cells in a row", file=path, line=n,
-                advice="Say the line of the names by the option header (-1 where there are none), or the delimiter; "
-                "decimal commas between commas cannot be read.",
-            )  # fmt: skip
+            raise input_error("tables.names_over_wider_rows", path, n, many=many, ending="s" * (many != 1), width=width)
         if cells is None and not above and not remark and max(options.header, options.units) <= 0:
             break
         if cells is not None and (asked or not remark or not above or len(above) == 1):
@@ -409,12 +404,7 @@ def _head(
             break
     for n, what in ((options.header, "header"), (options.units, "units")):
         if n > 0 and n not in [a[0] for a in above]:
-            raise InputError(
-                f"no names or units in line {n}",
-                f"a line over the data, which begin in line {start}",
-                column=what,
-                file=path,
-            )
+            raise input_error("tables.no_names_in_line", path, column=what, n=n, start=start)
     head = explained(read_head(above, width, marks, numbers, options.header, options.units), lines[: start - 1])
     if head.line and is_comment(lines[head.line - 1].lstrip(), comments):
         remarks.append(f"line {head.line}: the last comment over the data is taken for the names of the columns")

@@ -9,9 +9,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from coeflab.core.errors import InputError
+from coeflab.core.texts import input_error
 from coeflab.core.wording import listed
 from coeflab.law.symbols import ANGULAR
-from coeflab.tables.proposals import named_as
+from coeflab.tables.column_names import named_as
 from coeflab.tables.raw_table import RawColumn, RawTable
 
 TIMES = ("t", "time", "zeit", "temps", "tempo", "timestamp", "seconds", "sec", "elapsed time", "simulation time")
@@ -37,13 +38,7 @@ def record_over_time(raw: RawTable) -> Iterator[InputError]:
     if time is None:
         return
     if moving := _in_motion(raw, time):
-        yield InputError(
-            f"a record over time: {moving} change in every row",
-            "forces of steady runs",
-            file=raw.path,
-            column=time.name,
-            advice=IDENTIFY,
-        )
+        yield input_error("tables.record_of_rates", raw.path, column=time.name, moving=moving, identify=IDENTIFY)
         return
     x, y, u, v = (by_name.get(name) for name in "xyuv")
     heading = next((by_name[name] for name in HEADINGS if name in by_name), None)
@@ -54,9 +49,7 @@ def record_over_time(raw: RawTable) -> Iterator[InputError]:
     else:
         yield from _oscillation(raw, time, by_name)
         return
-    yield InputError(
-        f"a record over time: {found}", "forces of steady runs", file=raw.path, column=x.name, advice=IDENTIFY
-    )
+    yield input_error("tables.record_of_positions", raw.path, column=x.name, found=found, identify=IDENTIFY)
 
 
 def _in_motion(raw: RawTable, time: RawColumn) -> str:
@@ -136,9 +129,8 @@ def _oscillation(raw: RawTable, time: RawColumn, by_name: dict[str, RawColumn]) 
         ratio, whole = abs(float(moved @ between)) / size, float(moved @ moved) / size
         turns = (1.0,) if place in ("y", "z") else (1.0, 180.0 / np.pi, np.pi / 180.0)
         if any(LIKE[0] < ratio / per < LIKE[1] and whole < 2.0 * per**2 for per in turns):
-            yield InputError(
-                f"a record over time: {path.name} moves at the speed of {speed.name}", "forces of steady runs", file=raw.path,
-                column=speed.name, advice=f"coeflab formats pmm says how forces over oscillating runs are read. {IDENTIFY}",
+            yield input_error(
+                "tables.record_of_oscillation", raw.path, column=speed.name, path=path.name, speed=speed.name, identify=IDENTIFY,
             )  # fmt: skip
             return
 

@@ -1,178 +1,40 @@
-"""From the columns of any importer to a ForceTable: axes, angle signs, half models, inertia, exclusions.
-
-Columns of a table in SI but in its own axes: what every importer makes of its file before the common turn to FRD.
-"""
+"""From the columns of any importer to a ForceTable: axes, angle signs, half models, inertia, exclusions."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field, replace
-from hashlib import sha256
-from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
-from coeflab.core.axes import ANYWHERE, Axes, angle_sign
+from coeflab.core.axes import ANYWHERE, angle_sign
 from coeflab.core.errors import InputError, shown, together
 from coeflab.core.finding import Finding, Severity
 from coeflab.core.provenance import InputFile, sha256_of
-from coeflab.core.types import Array, brief
+from coeflab.core.texts import input_error
+from coeflab.core.types import Array
 from coeflab.law.rigid_body import rigid_body_force
 from coeflab.law.symbols import ANGULAR, COMPONENTS, LINEAR, MOMENTS, MOTIONS
-from coeflab.tables.assumptions import assumed
+from coeflab.tables.assumptions import INERTIA, assumed
 from coeflab.tables.campaign import CENTRES, SIDES, SIGNED, Campaign, Cut, TableDeclaration, TowedInertia, cut_of
 from coeflab.tables.column_map import WIND
-from coeflab.tables.force_table import DRIVEN, FEWEST_SPEEDS, Declared, Exclusion, ForceTable, running_rows
-
-
-@brief
-@dataclass(frozen=True, slots=True, eq=False)
-class Columns:
-    """Columns in SI, by their plain names, in the axes that the campaign declares.
-
-    Attributes
-    ----------
-    file : Path
-    header_line : int
-    lines : tuple of int
-        Line number of every row.
-    headers : dict of str to str
-        Header of a column as written, by its plain name (``Y`` for ``Y' [-]``).
-    angles : dict of str to array
-        ``alpha``, ``beta`` in radians, in the sign that the table uses.
-    velocity : dict of str to array
-        u v w p q r, m/s and rad/s.
-    controls : dict of str to array
-        ``dr``, ``ds``, ``db`` in radians.
-    speed : (n,) array
-        U, m/s.
-    forces, errors : dict of str to array
-        X Y Z K M N and their standard errors, N and N m; NaN where blank. Of ``drag``, ``lift`` (up) and ``side`` (to
-        starboard), along and across the flow, `in_body_axes` makes X, Y and Z.
-    labels : dict of str to list of str
-    doubtful : tuple of frozenset of str
-        For every row the plain names of columns whose digits are doubtful in the source.
-    row_labels : tuple of str
-        One short name per row.
-    files : tuple of Path
-        What was read, where ``file`` is a folder.
-    radius : (n,) array or None
-        Column R, from the arm point to the centre of the circle, m; in the place of p, q and r.
-    density : (n,) array or None
-        Of the water of every row, kg/m^3; by default the campaign's.
-    propeller : dict of str to array
-        ``rps`` in rad/s, ``J``, ``thrust`` in N; NaN where blank.
-    """
-
-    file: Path
-    header_line: int
-    lines: tuple[int, ...]
-    headers: Mapping[str, str]
-    angles: Mapping[str, Array]
-    velocity: Mapping[str, Array]
-    controls: Mapping[str, Array]
-    speed: Array
-    forces: Mapping[str, Array]
-    errors: Mapping[str, Array]
-    labels: Mapping[str, list[str]]
-    doubtful: tuple[frozenset[str], ...]
-    row_labels: tuple[str, ...] = field(default=())
-    files: tuple[Path, ...] = ()
-    radius: Array | None = None
-    density: Array | None = None
-    propeller: Mapping[str, Array] = field(default_factory=dict)
-
-    def __len__(self) -> int:
-        return len(self.lines)
-
-    def fail(
-        self, found: str, expected: str, *, row: int | None = None, name: str = "", advice: str = ""
-    ) -> InputError:
-        """An error about one cell, a column or the header, to be raised by the caller; of a folder by the name of the run."""
-        is_folder = self.file.is_dir()
-        line = None if is_folder else self.header_line or None if row is None else self.lines[row]
-        if is_folder and row is not None and self.row_labels:
-            found = f"{found} in {self.row_labels[row]}"
-        return InputError(
-            found, expected, file=self.file, line=line, column=self.headers.get(name, name) or None, advice=advice
-        )
-
-    @property
-    def digest(self) -> str:
-        """Hexadecimal sha256 of the numbers, for columns that no file holds."""
-        out = sha256()
-        for part in (self.angles, self.velocity, self.controls, {"U": self.speed}, self.forces, self.errors):
-            for name in sorted(part):
-                out.update(name.encode() + np.ascontiguousarray(part[name], dtype="<f8").tobytes())
-        return out.hexdigest()
-
-    @property
-    def settings(self) -> dict[str, Array]:
-        """What the test was set to: angles, velocities, control angles."""
-        return {**self.angles, **self.velocity, **self.controls}
-
-    def check(self) -> None:
-        """Refuse settings that are blank, angles beyond a half turn, and standard errors that are none.
-
-        Raises
-        ------
-        InputError
-            By line and column; of every column the first cell.
-        """
-        if complaints := list(self._complaints()):
-            raise together(complaints)
-
-    def _complaints(self) -> Iterator[InputError]:
-        if not self.forces:
-            yield self.fail("no force column", "at least one of X Y Z K M N")
-        if (row := _first(~(self.speed > 0.0))) is not None:
-            found = "a blank cell" if np.isnan(self.speed[row]) else f"a speed of {self.speed[row]:g} m/s"
-            yield self.fail(found, "a speed above zero", row=row, name="U")
-        if self.density is not None and (row := _first(~(self.density > 0.0))) is not None:
-            found = "a blank cell" if np.isnan(self.density[row]) else f"a density of {self.density[row]:g} kg/m^3"
-            yield self.fail(found, "a density above zero", row=row, name="density")
-        for name, values in self.settings.items():
-            if (row := _first(np.isnan(values))) is not None:
-                yield self.fail("a blank cell", "a number", row=row, name=name)
-                continue
-            if name in self.velocity or (row := _first(np.abs(values) > np.pi)) is None:
-                continue
-            yield self.fail(
-                f"an angle of {values[row]:.4g} rad",
-                "an angle within half a turn",
-                row=row,
-                name=name,
-                advice=f"If the column is in degrees, write {self.headers[name].partition(' [')[0]} [deg].",
-            )
-        for name, values in self.errors.items():
-            if name not in self.forces:
-                yield self.fail(f"se_{name} without {name}", f"a column {name}", name=f"se_{name}")
-                continue
-            unused = np.isnan(self.forces[name]) & np.isnan(values)
-            if (row := _first(~(values > 0.0) & ~unused)) is not None:
-                found = "a blank cell" if np.isnan(values[row]) else f"{values[row]:g}"
-                yield self.fail(found, "a standard error above zero", row=row, name=f"se_{name}")
-
-
-def _first(where: NDArray[np.bool_]) -> int | None:
-    rows = np.flatnonzero(where)
-    return int(rows[0]) if rows.size else None
-
+from coeflab.tables.columns import Columns, columns_of, first_row
+from coeflab.tables.force_table import DRIVEN, Declared, Exclusion, ForceTable, running_rows
+from coeflab.tables.wind_axes import in_body_axes
 
 BLANK, MARKED = "blank in the source", 'marked "uncertain" in the source'
-STRAIGHT, SIDEWAYS = 1e-12, 1e-3  # sine of an angle that is none; cosine of one beyond which Y says nothing of C
 SAME_DENSITY = 1e-3  # relative, as runs of one table may differ
 ONE_AXIS = 1e-9  # of the largest rate: smaller ones are rounding
 TAKEN_OUT = "inertia of the model subtracted"
 HALF = "half model"
+WITHOUT_BALANCE = ("cfd", "synthetic", "estimate")  # kinds of tables whose forces no balance read
 
 
 def force_table(columns: Columns, campaign: Campaign, table: TableDeclaration) -> ForceTable:
     """Turn columns into the fluid's force on the body in FRD about the campaign's reference point.
 
     Moments that the table has about a point of its own are moved; one whose move needs a force that the table lacks is left
-    left out, which the notes say. Lift and drag are turned to body axes, see `in_body_axes`.
+    out, which the notes say. Lift and drag are turned to body axes, see `in_body_axes`.
 
     Raises
     ------
@@ -182,17 +44,14 @@ def force_table(columns: Columns, campaign: Campaign, table: TableDeclaration) -
     columns.check()
     digest = sha256_of(columns.file, columns.files) if columns.file.exists() else columns.digest
     if table.sha256 and table.sha256 != digest:
-        raise InputError(
-            f"sha256 {digest[:12]}...", f"{table.sha256[:12]}... as campaign.toml declares", file=columns.file,
-            advice="The table was changed after it was entered; restore it or update table.sha256.",
-        )  # fmt: skip
+        raise input_error("tables.table_changed", columns.file, digest=digest[:12], sha256=table.sha256[:12])
     if complaints := list(_undeclared(columns, campaign, table)):
         raise together(complaints)
     point = campaign.reference_point if table.reference_point is None else table.reference_point
     motion = _motion(columns, campaign, table, point)
     notes = [] if campaign.axes.name == "FRD" else [f"axes turned from {campaign.axes.name} to FRD"]
     if wind := [c for c in WIND if c in columns.forces]:
-        columns = in_body_axes(columns, campaign)
+        columns = in_body_axes(columns, campaign.axes, _linear(columns, campaign))
         still = [f"{a} = 0" for a in ("alpha", "beta") if columns.angles and a not in columns.angles]
         notes.append(
             f"{', '.join(wind)} turned to body axes by the flow of each row" + f" ({', '.join(still)})" * bool(still)
@@ -207,11 +66,15 @@ def force_table(columns: Columns, campaign: Campaign, table: TableDeclaration) -
         notes.append(f"rates from U and R, centre of the circle: {table.centre}")
     if table.arm_point is not None and np.any(table.arm_point != point):
         notes.append(f"U and velocities are those of {_place(table.arm_point)}, moved from there")
-    half = campaign.half_model if table.half_model is None else table.half_model
+    half, place = (
+        (campaign.half_model, "campaign.toml") if table.half_model is None else (table.half_model, "its table")
+    )
+    if half is not None:
+        done = f"{', '.join(c.doubled)} doubled" if (c := cut_of(half)) else "nothing doubled"
+        notes.append(f"{HALF}{f' ({half})' if isinstance(half, str) else ''}: {done}, by half_model of {place}")
     if (cut := cut_of(half)) is not None:
         _require_symmetry(columns, cut, forces, motion)
         forces, errors = ({c: 2.0 * v for c, v in x.items()} for x in (forces, errors))
-        notes.append(f"{HALF}{f' ({half})' if isinstance(half, str) else ''}: {', '.join(cut.doubled)} doubled")
     turns = any(np.any(motion[m] != 0.0) for m in ANGULAR)
     if turns and table.contains_inertia and campaign.inertia is not None:
         forces = _without_inertia(campaign, campaign.inertia, point, forces, motion)
@@ -279,13 +142,17 @@ def _assumed(
     words |= {f"axes.{angle}": campaign.signs.get(angle, "") for angle in campaign.assumed}
     words["coefficients.area"] = f"1/2 rho U^2 L^2 with L = {campaign.scaling}"
     keys = [*table.assumed, *(f"axes.{angle}" for angle in campaign.assumed if angle in columns.angles)]
-    keys += ["table.arm_point"] * (table.arm_point is None and bool(np.any(motion["q"]) or np.any(motion["r"])))
+    turns = bool(np.any(motion["q"]) or np.any(motion["r"]))
+    keys += ["table.arm_point"] * (table.arm_point is None and turns)
     for key in dict.fromkeys(keys):
         section, _, plain = key.partition(".")
         value = words.get(key) or getattr(of.get(section), plain, "")
         if section == "columns":
             value = columns.headers.get(plain, plain)
         yield assumed(key, name, value, Severity.NOTE if key in ("axes.alpha", "axes.beta") else Severity.WARN)
+    if turns and table.contains_inertia is False and campaign.source.kind not in WITHOUT_BALANCE:
+        mass, severity = ("unknown", Severity.WARN) if campaign.inertia is None else ("known", Severity.NOTE)
+        yield Finding.of(INERTIA, name, severity, mass=mass, motions=("q", "r"), components=())
     still = np.all([columns.velocity.get(c, 0.0) == np.zeros(len(columns)) for c in LINEAR], axis=0)
     if "U" not in columns.headers and surge_column(campaign) in columns.velocity and np.any(still):
         yield Finding.of(
@@ -302,51 +169,31 @@ def _undeclared(columns: Columns, campaign: Campaign, table: TableDeclaration) -
     result, declared = table.forces_density, campaign.conditions.density
     in_newton = any(not columns.headers.get(c, c).startswith(f"{c}'") for c in columns.forces)
     if result is not None and columns.density is None and in_newton and abs(declared - result) > SAME_DENSITY * result:
-        yield InputError(
-            f"density = {declared:g} kg/m^3", f"{result:g}, the forces_density of {table.file}", file=campaign.path, key="conditions.density",
-            advice="Primes are right with the density that the forces were computed with. To state them at another, import the runs "
-            f"again with --option density={declared:g}.",
+        yield input_error(
+            "tables.other_forces_density", campaign.path, key="conditions.density", declared=declared, result=result, path=table.file,
         )  # fmt: skip
     rates = [c for c in ANGULAR if c in columns.velocity]
     turns = [*(c for c in MOMENTS if c in columns.forces), *rates, *["R"] * (columns.radius is not None)]
     if campaign.datum == ANYWHERE and turns:
-        yield InputError(
-            f"datum = {shown(ANYWHERE.id)} with {', '.join(turns)}", "the point of the body that places count from",
-            file=campaign.path, key="axes.datum", advice="Moments and rates are other numbers about every point.",
-        )  # fmt: skip
+        yield input_error(
+            "tables.datum_anywhere", campaign.path, key="axes.datum", id=shown(ANYWHERE.id), turns=", ".join(turns)
+        )
     if columns.radius is not None:
         if rates:
-            yield columns.fail(
-                f"R and {', '.join(rates)}",
-                "one or the other",
-                name="R",
-                advice="The rate is U over R; leave one column out.",
-            )
+            yield columns.fail("tables.radius_beside_rates", name="R", rates=", ".join(rates))
         if not table.centre:
-            yield campaign.fail(
-                table, "centre", "no declaration", f"one of {', '.join(map(shown, CENTRES))}",
-                "The side of the body on which the centre of its circle lies: on the starboard side r > 0.",
-            )  # fmt: skip
+            yield campaign.fail(table, "centre", "tables.no_centre", centres=", ".join(map(shown, CENTRES)))
         if table.arm_point is None:
             yield campaign.fail(
-                table, "arm_point", "no declaration", "the point [x, y, z] that R and U are measured to, FRD, from the datum",
-                f"Often the reference point, {[float(x) for x in campaign.reference_point]}; a point x forward of it sees "
-                "v = x r more.",
-            )  # fmt: skip
+                table, "arm_point", "tables.no_arm_point", reference_point=[float(x) for x in campaign.reference_point]
+            )
     elif table.centre:
-        yield campaign.fail(table, "centre", "centre without a column R", "a column R [m], or no centre")
+        yield campaign.fail(table, "centre", "tables.centre_without_radius")
     turning = columns.radius is not None or any(np.any(columns.velocity[c] != 0.0) for c in rates)
     if turning and table.contains_inertia is None:
-        yield campaign.fail(
-            table, "contains_inertia", "no declaration", "contains_inertia = true or false",
-            "A balance on a rotating arm carries the model's inertia, a solver in a rotating frame does not; "
-            "for a slender body the sign of Yr' depends on it.",
-        )  # fmt: skip
+        yield campaign.fail(table, "contains_inertia", "tables.inertia_of_arm_not_declared")
     if turning and table.contains_inertia and campaign.inertia is None:
-        yield campaign.fail(
-            table, "contains_inertia", "contains_inertia = true without mass",
-            "[inertia] with mass, centre_of_gravity, and inertia where a row turns about two axes at once",
-        )  # fmt: skip
+        yield campaign.fail(table, "contains_inertia", "tables.inertia_of_arm_without_mass")
 
 
 def _motion(columns: Columns, campaign: Campaign, table: TableDeclaration, point: Array) -> dict[str, Array]:
@@ -366,9 +213,7 @@ def _linear(columns: Columns, campaign: Campaign) -> Array:
     """Velocities u v w in FRD, (n, 3), at the point that the table states them for."""
     linear_columns = [c for c in LINEAR if c in columns.velocity]
     if columns.angles and linear_columns:
-        raise columns.fail(
-            f"angles and {', '.join(linear_columns)}", "one or the other", advice="Write the speed as U [m/s]."
-        )
+        raise columns.fail("tables.angles_beside_velocities", linear_columns=", ".join(linear_columns))
     zero = np.zeros(len(columns))
     angle = {
         name: angle_sign(name, campaign.signs.get(name), campaign.path) * values
@@ -385,101 +230,9 @@ def _linear(columns: Columns, campaign: Campaign) -> Array:
             rest = columns.speed**2 - np.sum(linear**2, axis=1)
             if np.any(rest < 0.0):
                 row = int(np.flatnonzero(rest < 0.0)[0])
-                raise columns.fail("a cross-flow faster than U", "v and w within U", row=row)
+                raise columns.fail("tables.cross_flow_faster", row=row)
             linear[:, 0] = np.sqrt(rest)
     return np.asarray(linear)
-
-
-def in_body_axes(columns: Columns, campaign: Campaign) -> Columns:
-    """Lift, drag and side force as X, Y, Z in the declared axes, by the flow of each row.
-
-    With L up, D aft and C to starboard, across and along the flow, and a, b of u = U cos(a) cos(b), v = U sin(b),
-    w = U sin(a) cos(b), in FRD::
-
-        X = -D cos(a) cos(b) - C cos(a) sin(b) + L sin(a)
-        Y = -D sin(b)        + C cos(b)
-        Z = -D sin(a) cos(b) - C sin(a) sin(b) - L cos(a)
-
-    Where the table has Y of the body in the place of C, C = (Y + D sin(b)) / cos(b). The flow is that of the row's angles
-    or velocities, before they are moved to another point. Standard errors become the bound sum |coefficient| se, which
-    holds for any correlation.
-
-    Notes
-    -----
-    The matrix of flow (wind) to body axes of the Society of Flight Test Engineers, Reference Handbook (2013), 6.2.3, applied
-    to (-D, C, -L).
-
-    Raises
-    ------
-    InputError
-        A part that X, Y or Z needs is missing: drag, lift at an incidence, the side force (or Y) at a drift angle, or the
-        flow itself; X or Z of the body beside drag, or Y beside side.
-    """
-    sources = columns_of(campaign.axes)
-    if complaints := list(_wind_complaints(columns, {c: s for c, (s, _) in sources.items()})):
-        raise together(complaints)
-    linear = _linear(columns, campaign)
-    u, sin_b, w = (linear / np.linalg.norm(linear, axis=1)[:, None]).T
-    cos_b = np.hypot(u, w)
-    inclined = cos_b > 0.0
-    cos_a, sin_a = (np.divide(part, cos_b, out=np.full(len(columns), rest), where=inclined) for part, rest in ((u, 1.0), (w, 0.0)))  # fmt: skip
-    result, (y, y_sign) = {"X": "drag", "Y": "side", "Z": "lift"}, sources["Y"]
-    parts: dict[str, dict[str, Array]] = {
-        "X": {"drag": -cos_a * cos_b, "side": -cos_a * sin_b, "lift": sin_a},
-        "Y": {"drag": -sin_b, "side": cos_b},
-        "Z": {"drag": -sin_a * cos_b, "side": -sin_a * sin_b, "lift": -cos_a},
-    }
-    if "side" not in columns.forces and y in columns.forces:
-        if (row := _first(cos_b < SIDEWAYS)) is not None:
-            raise columns.fail(
-                "a flow straight from the side", "a column side", row=row, advice="Y does not say it there."
-            )
-        for part, along in (("X", cos_a), ("Z", sin_a)):
-            of_y = {"drag": -along / cos_b, y: -y_sign * along * sin_b / cos_b}
-            parts[part] = of_y | {"lift": parts[part]["lift"]}
-    moved = {name: value for name, value in columns.forces.items() if name not in WIND}
-    errors = {name: value for name, value in columns.errors.items() if name not in WIND}
-    headers, doubtful = dict(columns.headers), [set(words) for words in columns.doubtful]
-    for part, of in result.items():
-        if of not in columns.forces:
-            continue
-        needed = {name: k for name, k in parts[part].items() if np.any(np.abs(k) > STRAIGHT)}
-        if (lacking := next((n for n in needed if n not in columns.forces), "")) and lacking in WIND:
-            angle, row = ("alpha", np.abs(sin_a)) if lacking == "lift" else ("beta", np.abs(sin_b))
-            raise columns.fail(
-                f"{of} without {lacking} at {angle} = {np.degrees(np.arcsin(min(row.max(), 1.0))):.3g} deg", f"a column {lacking}"
-                + f", or {y} of the body" * (lacking == "side"), row=int(np.argmax(row)), name=of,
-                advice=f"{part} of the body contains a part of it.",
-            )  # fmt: skip
-        own, sign = sources[part]
-        moved[own] = sign * np.asarray(sum(k * columns.forces[name] for name, k in needed.items()))
-        if all(name in columns.errors for name in needed):
-            errors[own] = np.asarray(sum(np.abs(k) * columns.errors[name] for name, k in needed.items()))
-        headers[own] = headers.get(of, of)
-        for row, words in enumerate(columns.doubtful):
-            doubtful[row] |= {own} if words & set(needed) else set()
-    return replace(columns, forces=moved, errors=errors, headers=headers, doubtful=tuple(map(frozenset, doubtful)))
-
-
-def _wind_complaints(columns: Columns, own: Mapping[str, str]) -> Iterator[InputError]:
-    """What is missing or doubled beside lift, drag and side force; ``own`` maps FRD components to the table's columns."""
-    wind = [c for c in WIND if c in columns.forces]
-    if "drag" not in wind:
-        yield columns.fail(f"{' and '.join(wind)} without drag", "a column drag", name=wind[0],
-                           advice="X, Y and Z of the body contain parts of the drag; C_D0 is part of the slope of Z.")  # fmt: skip
-    for part, beside in (("X", "drag"), ("Z", "drag"), ("Y", "side")):
-        if own[part] in columns.forces and beside in wind:
-            yield columns.fail(f"{' and '.join(wind)} beside {own[part]}", f"{beside} along the flow or {own[part]} along the body",
-                               name=own[part], advice="Ignore one of them, or import them as two tables.")  # fmt: skip
-    moving = [c for c in LINEAR if c in columns.velocity]
-    for force, angle in (("lift", "alpha"), ("side", "beta")):
-        if force in wind and angle not in columns.angles and not moving:
-            yield columns.fail(f"{force} without {angle}", f"a column {angle} [deg] (or u, v, w): {force} is across the flow",
-                               name=force)  # fmt: skip
-    resistance = not columns.settings and np.unique(columns.speed).size >= FEWEST_SPEEDS
-    if wind == ["drag"] and not columns.angles and not moving and not resistance:
-        yield columns.fail("drag without a direction of the flow", "a column alpha or beta [deg], or u, v, w", name="drag",
-                           advice="In straight flow call it -X.")  # fmt: skip
 
 
 def _on_circle(columns: Columns, centre: str, linear: Array) -> Array:
@@ -490,17 +243,16 @@ def _on_circle(columns: Columns, centre: str, linear: Array) -> Array:
     """
     radius = np.asarray(columns.radius)
     side, signed = centre.removeprefix(SIGNED), centre.startswith(SIGNED)
-    if (row := _first(~(np.abs(radius) > 0.0 if signed else radius > 0.0))) is not None:
+    if (row := first_row(~(np.abs(radius) > 0.0 if signed else radius > 0.0))) is not None:
         found = "a blank cell" if np.isnan(radius[row]) else f"a radius of {radius[row]:g} m"
         raise columns.fail(
-            found, "a radius that is not zero" if signed else "a radius above zero", row=row, name="R",
-            advice="A run without rotation goes to a table of its own."
-            + ("" if signed else f' Where the sign of R separates the sides, write centre = "{SIGNED}{side}".'),
+            "tables.no_radius", row=row, name="R", found=found, wanted="a radius that is not zero" if signed else "a radius above zero",
+            signs="" if signed else f' Where the sign of R separates the sides, write centre = "{SIGNED}{side}".',
         )  # fmt: skip
     axis = np.cross(linear, SIDES[side])
     size, speed = np.linalg.norm(axis, axis=1), np.linalg.norm(linear, axis=1)
-    if (row := _first(size <= 1e-9 * speed)) is not None:
-        raise columns.fail(f"a motion straight to {side}", "a motion across the arm", row=row, name="R")
+    if (row := first_row(size <= 1e-9 * speed)) is not None:
+        raise columns.fail("tables.straight_to_the_centre", row=row, name="R", side=side)
     return np.asarray(axis * (speed / (radius * size))[:, None] + 0.0)
 
 
@@ -545,16 +297,6 @@ def speed_of_rows(
     return np.where(on_the_spot, campaign.conditions.speed, found)
 
 
-def columns_of(axes: Axes) -> dict[str, tuple[str, float]]:
-    """For every FRD component the table's column and its sign; axes are at right angles, so each is one column."""
-    out = {}
-    for group in (COMPONENTS[:3], COMPONENTS[3:]):
-        for i, name in enumerate(group):
-            j = int(np.argmax(np.abs(axes.rotation[i])))
-            out[name] = group[j], float(axes.rotation[i, j])
-    return out
-
-
 def _require_symmetry(columns: Columns, cut: Cut, forces: Mapping[str, Array], motion: Mapping[str, Array]) -> None:
     """Refuse what half of a body cannot measure."""
     odd = [c for c in forces if c in cut.lost]
@@ -564,10 +306,9 @@ def _require_symmetry(columns: Columns, cut: Cut, forces: Mapping[str, Array], m
         what = f"the antisymmetric {', '.join(odd)}" if odd else f"motion {', '.join(moving)}"
         remedy = "leave these columns out (ignore), or " if odd else ""
         raise columns.fail(
-            f"{what} on a half model cut at {cut.plane}",
-            f"{', '.join(cut.doubled)} in flow along the plane {cut.plane}",
-            advice=f"A symmetry plane at {cut.plane} cannot carry {cut.carries_no}: {remedy}compute the whole model for those.",
-        )
+            "tables.lost_by_half_model", what=what, plane=cut.plane, doubled=", ".join(cut.doubled), carries_no=cut.carries_no,
+            remedy=remedy,
+        )  # fmt: skip
 
 
 def _exclusions(
@@ -581,10 +322,9 @@ def _exclusions(
     out: list[Exclusion] = []
     for label in table.selected:
         if label not in columns.labels:
-            raise InputError(
-                f"a selection by {shown(label)}", "a label column of the table", file=campaign.path,
-                column="table.select", advice=f"Name {label} under labels.",
-            )  # fmt: skip
+            raise input_error(
+                "tables.selection_without_label", campaign.path, column="table.select", label=shown(label), name=label
+            )
     for row, (line, doubtful) in enumerate(zip(columns.lines, columns.doubtful, strict=True)):
         for component, column in have.items():
             value = columns.forces[column][row]
@@ -594,10 +334,7 @@ def _exclusions(
                 reason = f"{status[row]}, {BLANK if np.isnan(value) else MARKED}" if status[row] else reason
                 out.append(Exclusion(row, line, component, reason, not np.isnan(value), status[row], True))
             elif np.isnan(value):
-                raise columns.fail(
-                    "a blank cell", "a number", row=row, name=column,
-                    advice=f'If the source has no readable value there, name {column} under "uncertain".',
-                )  # fmt: skip
+                raise columns.fail("tables.blank_cell_of_force", row=row, name=column, head=column)
         for label, wanted in table.selected.items():
             if columns.labels[label][row] != wanted:
                 why = f"{label} {columns.labels[label][row]}: {table.select_reason}"
@@ -621,10 +358,7 @@ def _without_inertia(
     """Add what holds the model on its circle, so that the fluid's force remains; about one axis alone Ix, Iy, Iz hold nothing."""
     rates = np.sort(np.abs([motion[m] for m in ANGULAR]), axis=0)
     if inertia.inertia is None and np.any(rates[1] > ONE_AXIS * rates[2]):
-        raise InputError(
-            "no inertia", "inertia = [Ix, Iy, Iz] about the centre of gravity, kg m^2", file=campaign.path, column="inertia.inertia",
-            advice="A row of the table turns about two axes at once.",
-        )  # fmt: skip
+        raise input_error("tables.two_axes_without_inertia", campaign.path, column="inertia.inertia")
     centre = inertia.centre_of_gravity - point
     tensor = np.diag(inertia.inertia or (0.0, 0.0, 0.0)) + inertia.mass * (
         centre @ centre * np.eye(3) - np.outer(centre, centre)

@@ -7,8 +7,8 @@ from dataclasses import replace
 import numpy as np
 
 from coeflab.tables.column_map import ROLES, SETTINGS, read_column_map
+from coeflab.tables.column_names import named_as
 from coeflab.tables.dialect import is_unit, name_and_unit, unit_in_words
-from coeflab.tables.proposals import named_as
 from coeflab.tables.raw_table import RawColumn, RawTable
 
 

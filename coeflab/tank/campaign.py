@@ -1,6 +1,6 @@
 """What a tow gave, as a campaign: one table a kind of condition, every row with its state, and where each row comes from.
 
-The rows are means over the plateau of each run, as `coeflab.tables.runs` makes them of any solver's. Nothing in them depends
+The rows are means over the plateau of each run, as `coeflab.tables.run_summary` makes them of any solver's. Nothing in them depends
 on when or how often a run was started, so that a finished run gives the same bytes after an interruption.
 """
 
@@ -25,7 +25,7 @@ from coeflab.law.symbols import ANGULAR, COMPONENTS, CONTROL_COLUMNS, FORCES, LI
 from coeflab.tables.campaign import CUTS, FILE, FOURFOLD, PORT_STARBOARD, UP_DOWN
 from coeflab.tables.histories import Convergence
 from coeflab.tables.raw_table import RawTable, Run
-from coeflab.tables.runs import RunSummary, summarised
+from coeflab.tables.run_summary import RunSummary, summarised
 from coeflab.tank.jobs import Job, JobState, Progressed
 from coeflab.tank.plateau import on_plateau, until
 from coeflab.tank.tank import Tank

@@ -24,7 +24,7 @@ from coeflab.core.text.toml import read_text, read_toml
 from coeflab.tables.campaign import FILE
 from coeflab.tables.histories import Convergence
 from coeflab.tables.raw_table import Stated
-from coeflab.tables.runs import RunSummary
+from coeflab.tables.run_summary import RunSummary
 from coeflab.tank.campaign import HISTORIES, RUNS, TowedRun
 from coeflab.tank.jobs import EARLIER, Job, JobState, Progressed, or_nan, progress, write_progress
 from coeflab.tank.test_matrix import TowCondition

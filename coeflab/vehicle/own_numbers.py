@@ -142,8 +142,8 @@ def own_number(typed: str) -> OwnNumber:
     return OwnNumber(primed(d.text), value, u95, not is_prime, over_speed[0] if over_speed else "")
 
 
-def own_numbers(typed: Sequence[str]) -> tuple[OwnNumber, ...]:
-    """All that is typed, none twice.
+def own_numbers(typed: Sequence[str | OwnNumber]) -> tuple[OwnNumber, ...]:
+    """All that is typed, or was read from a file, none twice.
 
     Raises
     ------
@@ -153,7 +153,7 @@ def own_numbers(typed: Sequence[str]) -> tuple[OwnNumber, ...]:
     read, complaints = [], []
     for one in typed:
         try:
-            read.append(own_number(one))
+            read.append(one if isinstance(one, OwnNumber) else own_number(one))
         except InputError as why:
             complaints.append(why)
     if complaints:
@@ -273,7 +273,7 @@ def mass_of(mass: float, centre: Array | None, inertia: Sequence[float] = ()) ->
 
 
 def typed_file(
-    name: str, numbers: Sequence[str], *, length: str, length_name: str, speed: str, density: str, about: str, mass: str = "",
+    name: str, numbers: Sequence[str | OwnNumber], *, length: str, length_name: str, speed: str, density: str, about: str, mass: str = "",
     cg: str = "", inertia: str = "", volume: str = "", cb: str = "", body: str = "", thrusters: Sequence[str] = (), rudder: str = "",
     stern_planes: str = "", bow_planes: str = "",
 ) -> ParameterFile:  # fmt: skip
@@ -282,8 +282,8 @@ def typed_file(
     Parameters
     ----------
     name, body : str
-    numbers : sequence of str
-        As `own_number` reads them.
+    numbers : sequence of str or OwnNumber
+        As `own_number` reads them, or read.
     length, speed, density, mass, volume : str
         In SI or with a unit.
     length_name : str
@@ -308,7 +308,8 @@ def typed_file(
             raise InputError("nothing", "cg, nose, midship ..." if option == "--about" else "a number", column=option,
                              advice=f"Add {option}: nothing is assumed.")  # fmt: skip
     if not numbers:
-        raise InputError("no number", f"SYMBOL=VALUE, such as {EXAMPLE}", column="--set")
+        raise InputError("no number", f"SYMBOL=VALUE, such as {EXAMPLE}", column="--set",
+                         advice="A sheet of them: --from FILE.")  # fmt: skip
     known = own_numbers(numbers)
     scaling = Scaling(positive_typed(length, "length", "--length"), length_name)
     conditions = Conditions(

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from coeflab.core.errors import InputError
-from coeflab.tables.assumptions import CODE, assumed, carried, depends
+from coeflab.tables.assumptions import CODE, INERTIA, assumed, carried, depends
 from coeflab.tables.campaign import read_campaign
 from coeflab.tables.raw_table import RawTable, Stated
 from coeflab.tables.settings import Setting
@@ -59,6 +59,28 @@ def test_an_accepted_point_of_the_arm_stands_beside_every_coefficient_of_it(
     assert all("table.arm_point" in page for page in pages)
     exported = json.loads(coeflab("export", file, "--to", "csv", "--out", "x", "--json").stdout)  # type: ignore[attr-defined]
     assert any("arm_point" in f["means"] and f["severity"] == "warn" for f in exported["findings"])
+
+
+@pytest.mark.parametrize(
+    ("more", "severity"),
+    [
+        ((), "warn"),
+        (("source.kind=experiment",), "warn"),
+        (("inertia.mass=40 kg", "inertia.centre_of_gravity=-1 from nose"), "note"),
+        (("source.kind=cfd",), ""),
+        (("table.contains_inertia=true", "inertia.mass=40 kg", "inertia.centre_of_gravity=-1 from nose"), ""),
+    ],
+)
+def test_yr_of_a_balance_says_that_no_mass_checks_its_inertia(
+    tmp_path: Path, coeflab: Callable[..., object], more: tuple[str, ...], severity: str
+) -> None:
+    keys = ("conditions.density=1000", "table.arm_point=reference point", *more)
+    given = [*KNOWN, *(word for key in keys for word in ("--set", key))]
+    assert invoke("import", arm(tmp_path), "--out", tmp_path / "made", *given, "--accept").exit_code == 0
+    found = json.loads(coeflab("fit", "made", "--json").stdout)["findings"]  # type: ignore[attr-defined]
+    said = {(f["severity"], *f["facts"]["symbols"][:2]) for f in found if f["code"] == INERTIA}
+    assert said == ({(severity, "Yr'", "Nr'")} if severity else set())
+    assert ("declared free" in coeflab("fit", "made").stdout) is (severity == "warn")  # type: ignore[attr-defined]
 
 
 def test_a_point_that_a_person_states_is_no_assumption(tmp_path: Path) -> None:

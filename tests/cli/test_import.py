@@ -119,6 +119,22 @@ def test_everything_open_comes_in_one_form_with_the_command_that_settles_it(drif
     assert not (tmp_path / "out").exists()
 
 
+def test_several_files_of_one_folder_become_one_campaign(drift: Path, tmp_path: Path) -> None:
+    for name in ("second", "third"):
+        drift.with_name(f"{name}.csv").write_text(drift.read_text())
+    second, out = drift.with_name("second.csv"), tmp_path / "made"
+    asked = invoke("import", drift, second, "--out", out)
+    assert asked.exit_code == 2
+    assert command_of(asked.output)[1:3] == [str(drift), str(second)]
+    assert invoke("import", drift, second, "--out", out, *sets(), *MAPS, "--accept").exit_code == 0
+    assert [t.file for t in read_campaign(out / "campaign.toml").tables] == [drift.name, second.name]
+    (tmp_path / "other").mkdir()
+    (other := tmp_path / "other" / "fourth.csv").write_text(drift.read_text())
+    (words := drift.with_name("words.txt")).write_text("no table\n")
+    assert "several files of one folder" in refused(invoke("import", drift, other))[0]
+    assert "words.txt: no table by its content" in refused(invoke("import", drift, words))[0]
+
+
 def test_the_command_of_the_form_settles_it(drift: Path, tmp_path: Path) -> None:
     form = invoke("import", drift, "--out", tmp_path / "out", "--map", "Run=label")
     said = {"axes.frame": "CFD", "axes.reference_point": "-2 from nose", "scaling.length": "4 m LOA", "conditions.density": "998.2",

@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from coeflab.core.arithmetic import ArithmeticProblem, evaluate
-from coeflab.formats.xdyn.read import Products, as_products
+from coeflab.formats.xdyn.products import Products, as_products
 
 NAMES = ("u", "v", "r")
 LEAVES = st.sampled_from([*NAMES, "2", "0.5", "3e-1"])

@@ -355,6 +355,21 @@ def test_a_value_whose_interval_contains_zero_has_an_open_sign():
     )
 
 
+@pytest.mark.parametrize("wanted", [(), ("Yv", "Kv")])
+def test_a_headline_names_an_open_roll_moment_only_where_it_is_asked_for(wanted: tuple[str, ...]):
+    study = small_study(FULL)
+    (fit,) = study.fits
+    rolls = tuple(
+        replace(c, symbol="Kv", u95=2.0 * abs(c.value)) if c.symbol == "Nv" else c
+        for c in fit.coefficients.coefficients
+    )
+    swept = tuple(replace(s, symbol="Kv", component="K") if s.symbol == "Nv" else s for s in fit.sweeps)
+    turned = replace(fit, sweeps=swept, coefficients=replace(fit.coefficients, coefficients=rolls))
+    said = answer(replace(study, plan=replace(study.plan, wanted=wanted), fits=(turned,)), drawn=False)
+    assert [r.symbol for r in said.rows] == ["Yv", "Kv"]
+    assert ("sign open of Kv'" in said.sentence) == bool(wanted)
+
+
 def test_without_published_values_the_forest_is_over_ours():
     (panel,) = answer(small_study(FULL)).forest.panels
     assert panel.series[0].x == (1.0, 1.0)

@@ -211,6 +211,18 @@ def test_a_table_a_little_too_wide_lies_across_the_page():
     assert "(continued)" not in text_of(made)
 
 
+@pytest.mark.parametrize("alike", [False, True])
+def test_an_estimator_that_rows_share_is_explained_once(alike: bool):
+    words = ("calibrated slope", "least squares beyond the slopes, the form by AICc")
+    rows = tuple((f"row {r}", "1.0", words[0 if alike else r // 3]) for r in range(6))
+    made = opened(with_table(Table("Shared", ("name", "value", "estimator"), rows, left=frozenset({0, 2}))))
+    text = text_of(made)
+    assert flaws(made) == []
+    assert text.count(squeezed(words[0])) == 1
+    assert squeezed("estimator of all: " if alike else f"estimator b: {words[1]}.") in text
+    assert text.count("estimator") == (1 if alike else 3)
+
+
 def test_a_long_table_repeats_its_head():
     rows = tuple((f"row {r}", f"{r}.0") for r in range(200))
     made = opened(with_table(Table("Long", ("name", "magnitude"), rows)))

@@ -107,7 +107,7 @@ def test_forces_of_half_of_a_body_are_said_to_be_doubled_where_the_values_stand(
     (tmp_path / "table.csv").write_text("point,beta [deg],X [N],Y [N],N [N*m]\n" + "\n".join(rows) + "\n")
     halved = run(read_plan(tmp_path / "campaign.toml"))
     (said,) = sources.halves(halved)
-    assert said.endswith("table.csv: half model (upper): X, Y, N doubled.")
+    assert said.endswith("table.csv: half model (upper): X, Y, N doubled, by half_model of campaign.toml.")
     assert said in primed_about(halved)
     assert said in answer(halved, drawn=False).notes
     assert sources.halves(study) == ()

@@ -9,6 +9,8 @@ from typing import Any
 
 import numpy as np
 
+from coeflab.tables.collect import Collected, collect_groups
+
 FILE = "forces.stub"
 IMPORTER = """
 import json
@@ -56,6 +58,11 @@ def run(path, options):
                {k: table(file, about, names, rows, share) for k, share in parts.items()},
                Ended(about.get("ended", "whole")), about.get("why", ""))
 """
+
+
+def collect(path: Path, importer: str = "", *, names: str = "", **how: Any) -> Collected:
+    """A folder of runs as one table."""
+    return collect_groups(path, importer, patterns=(names,), **how)[0]
 
 
 def install(site: Path) -> None:

@@ -234,9 +234,15 @@ def test_inertia_is_taken_out_about_the_tables_own_point(read_table: Read) -> No
 def test_a_table_says_for_itself_whether_it_is_a_half_model(read_table: Read) -> None:
     csv = "alpha [deg],Z [N],X [N]\n2,-4,-3\n"
     for campaign, table, factor, note in (
-        (HALF, "", 2.0, "half model: X, Z, M doubled"),
-        (HALF, "half_model = false", 1.0, ""),
-        (SECTIONS["campaign"], 'half_model = "starboard"', 2.0, "half model (starboard): X, Z, M doubled"),
+        (HALF, "", 2.0, "half model: X, Z, M doubled, by half_model of campaign.toml"),
+        (HALF, "half_model = false", 1.0, "half model: nothing doubled, by half_model of its table"),
+        (SECTIONS["campaign"], "", 1.0, ""),
+        (
+            SECTIONS["campaign"],
+            'half_model = "starboard"',
+            2.0,
+            "half model (starboard): X, Z, M doubled, by half_model of its table",
+        ),
     ):
         read = read_table(csv, campaign=campaign, table=table)
         assert read.forces["Z"][0] == -4.0 * factor

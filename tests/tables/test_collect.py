@@ -21,7 +21,7 @@ from coeflab.core.errors import InputError
 from coeflab.core.wording import natural
 from coeflab.fits import FITS
 from coeflab.report.tables.force_tables import inspected, unused
-from coeflab.tables.collect import Collected, collect
+from coeflab.tables.collect import Collected
 from coeflab.tables.column_map import ColumnMap
 from coeflab.tables.conditions import likely_patterns, name_pattern
 from coeflab.tables.histories import Convergence
@@ -32,7 +32,7 @@ from coeflab.tables.reading import read_tables
 from coeflab.tables.run_list import read_run_list
 from coeflab.tables.runs import find_runs
 from tests.conftest import SECTIONS
-from tests.tables.runs_as_text import FILE, install, write_run
+from tests.tables.runs_as_text import FILE, collect, install, write_run
 
 pytestmark = pytest.mark.usefixtures("stub", "in_a_shell")
 NAMES = "b{beta:deg:m=-,p=.}_r{r:rad/s:p=.}"
@@ -649,10 +649,10 @@ def test_damaged_state_is_not_believed(tmp_path: Path) -> None:
 KILLED = """
 import sys
 from pathlib import Path
-from coeflab.tables.collect import collect
+from coeflab.tables.collect import collect_groups
 if __name__ == "__main__":
     root, state = Path(sys.argv[1]), Path(sys.argv[2])
-    collect(root, names="b{beta:deg}", state=state, workers=2, progress=lambda line: print(line, flush=True))
+    collect_groups(root, patterns=("b{beta:deg}",), state=state, workers=2, progress=lambda line: print(line, flush=True))
 """
 
 

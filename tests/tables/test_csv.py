@@ -109,7 +109,7 @@ def test_half_of_a_body_cut_at_z_0_doubles_x_y_n(read_table: Read, half: str) ->
     table = read_table(csv, campaign=UPPER.replace("upper", half), table=ARM)
     assert [float(table.forces[c][0]) for c in "XYN"] == [-6.0, -8.0, 10.0]
     assert table.errors["Y"][0] == 0.5
-    assert f"half model ({half}): X, Y, N doubled" in table.notes
+    assert f"half model ({half}): X, Y, N doubled, by half_model of campaign.toml" in table.notes
 
 
 def test_half_of_a_body_cut_at_z_0_refuses_what_leaves_that_plane(read_table: Read) -> None:

@@ -11,12 +11,13 @@ import pytest
 
 from coeflab.core.axes import parse_axes
 from coeflab.core.errors import InputError
+from coeflab.tables.column_company import proposals
 from coeflab.tables.column_map import read_column_map
 from coeflab.tables.imported import _table
 from coeflab.tables.importers import IMPORTERS
 from coeflab.tables.mapping import assigned
 from coeflab.tables.parts import read_parts
-from coeflab.tables.proposals import proposals, proposed
+from coeflab.tables.proposals import proposed
 from coeflab.tables.raw_table import RawColumn, RawTable
 from coeflab.tables.settings import Setting
 from coeflab.tables.several_tables import complaints_of, interpreted_together, questions_together

@@ -11,7 +11,7 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from coeflab.core.errors import InputError
-from coeflab.tables.importers import excel
+from coeflab.tables import workbook_size
 from coeflab.tables.importers.excel import raw, recognises
 
 SAMPLES = Path(__file__).parent / "samples" / "excel"
@@ -154,7 +154,7 @@ def test_a_text_that_may_have_a_mark_of_thousands_stays_text(tmp_path: Path) -> 
 
 
 def test_hostile_workbooks_are_refused_before_they_are_opened(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(excel, "SHEET_UNPACKED", 4 << 20)
+    monkeypatch.setattr(workbook_size, "SHEET_UNPACKED", 4 << 20)
     far = workbook(
         tmp_path / "far.xlsx",
         s='<row r="1"><c r="A1"><v>1</v></c></row><row r="1048576"><c r="XFD1048576"><v>2</v></c></row>',

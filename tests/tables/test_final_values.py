@@ -7,8 +7,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from coeflab.tables.collect import collect
 from coeflab.tables.histories import Convergence
+from tests.tables.runs_as_text import collect
 
 LINE = "-" * 20
 ZONES = "Zone      Pressure      Viscous      Total      Pressure      Viscous      Total"

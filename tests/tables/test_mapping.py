@@ -15,6 +15,7 @@ from typer.testing import CliRunner
 from coeflab.cli import app
 from coeflab.core.axes import FRAMES, Axes, parse_axes
 from coeflab.core.errors import InputError
+from coeflab.tables.column_company import proposals
 from coeflab.tables.column_map import read_column_map, unturned
 from coeflab.tables.evidence import evidence
 from coeflab.tables.force_table import ForceTable
@@ -23,7 +24,7 @@ from coeflab.tables.importers import PlannedTable
 from coeflab.tables.interpretation import interpreted
 from coeflab.tables.mapping import assigned, with_unit
 from coeflab.tables.parts import Part
-from coeflab.tables.proposals import proposals, proposed
+from coeflab.tables.proposals import proposed
 from coeflab.tables.raw_table import RawColumn, RawTable
 from coeflab.tables.reading import importer_of, read_raw, read_tables, recognised
 from coeflab.tables.several_tables import form_together

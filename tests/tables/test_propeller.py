@@ -12,11 +12,11 @@ from coeflab.fits.rows.straight_runs import straight_runs
 from coeflab.study.checks import data_gate
 from coeflab.study.checks.propeller import left_out, self_propulsion
 from coeflab.study.checks.straight_runs import friction
+from coeflab.tables.column_company import proposals
 from coeflab.tables.column_map import read_column_map
 from coeflab.tables.force_table import DRIVEN, ForceTable
 from coeflab.tables.importers import IMPORTERS
 from coeflab.tables.mapping import assigned
-from coeflab.tables.proposals import proposals
 from coeflab.tables.words.primes import SCALE
 
 Read = Callable[..., ForceTable]

@@ -13,13 +13,14 @@ from coeflab.cli import app
 from coeflab.core.errors import InputError
 from coeflab.fits.rows.straight_runs import _speeds
 from coeflab.fits.statistics.data_gate import _by_setting
+from coeflab.tables.column_company import proposals
 from coeflab.tables.column_map import read_column_map
+from coeflab.tables.column_names import named_as
 from coeflab.tables.form import Group
 from coeflab.tables.imported import _table
 from coeflab.tables.level_columns import slopes_by_idle_columns
 from coeflab.tables.mapping import assigned, without_a_setting
 from coeflab.tables.parts import read_parts
-from coeflab.tables.proposals import named_as, proposals
 from coeflab.tables.raw_table import RawColumn, RawTable
 from coeflab.tables.reading import importer_of, read_raw
 from coeflab.tables.settings import Setting

@@ -10,12 +10,13 @@ import numpy as np
 import pytest
 
 from coeflab.core.errors import InputError
+from coeflab.tables.column_company import proposals
 from coeflab.tables.column_map import read_column_map
 from coeflab.tables.dialect import Marks
 from coeflab.tables.interpretation import interpreted
 from coeflab.tables.mapping import Assigned
 from coeflab.tables.parts import Part
-from coeflab.tables.proposals import proposals, proposed
+from coeflab.tables.proposals import proposed
 from coeflab.tables.questions import Question, questions
 from coeflab.tables.raw_table import RawColumn, RawTable, Stated
 from coeflab.tables.settings import Setting, read_in, require_one_datum

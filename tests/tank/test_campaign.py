@@ -15,7 +15,7 @@ from coeflab.tables.force_table import ForceTable
 from coeflab.tables.histories import Convergence
 from coeflab.tables.raw_table import RawColumn, RawTable, Run, Stated
 from coeflab.tables.reading import read_tables, table_at
-from coeflab.tables.runs import RunSummary
+from coeflab.tables.run_summary import RunSummary
 from coeflab.tank.campaign import TowedRun, campaign_files, rows_of, short_history, towed_run
 from coeflab.tank.jobs import Job, JobState, Progressed
 from coeflab.tank.tank import Tank

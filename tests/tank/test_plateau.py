@@ -10,7 +10,7 @@ import pytest
 
 from coeflab.tables.histories import Convergence
 from coeflab.tables.raw_table import Ended, RawColumn, RawTable, Run
-from coeflab.tables.runs import summarised
+from coeflab.tables.run_summary import summarised
 from coeflab.tank.job import lengths
 from coeflab.tank.plateau import on_plateau, settling, until
 

@@ -12,10 +12,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from coeflab.core.errors import InputError, UnitsError, shown
-from coeflab.core.limits import CSV_BLANK_LINES, CSV_CELLS, CSV_LINE
+from coeflab.core.limits import CSV_BLANK_LINES, CSV_CELLS, CSV_LINE, LARGEST_NUMBER
 from coeflab.core.text.bounded import stream_of
 from coeflab.core.text.csv_rows import plain
-from coeflab.core.units import Header, parse_header
+from coeflab.core.units import Header, factor, parse_header
 
 _NUMBER = re.compile(r"[-+]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][-+]?[0-9]+)?")
 _UTF16 = (b"\xff\xfe", b"\xfe\xff")
@@ -83,6 +83,39 @@ class Cells:
                 )
             values[row] = number
         return values
+
+    def si(self, header: Header, dimension: str, example: str) -> NDArray[np.float64]:
+        """A column with its unit in the header, in SI; NaN marks a blank cell.
+
+        Parameters
+        ----------
+        header : Header
+        dimension : str
+            A key of `coeflab.core.units.SI`.
+        example : str
+            A header that would do, for one without unit.
+
+        Raises
+        ------
+        UnitsError
+            No unit, or one of another dimension.
+        InputError
+            As `numbers`, or a number beyond all sizes.
+        """
+        unit = require_unit(header, self.file, self.first_line - 1, example)
+        try:
+            scale = factor(unit, dimension)
+        except UnitsError as why:
+            raise why.at(self.file, self.first_line - 1, header.text) from None
+        with np.errstate(over="ignore"):
+            values = self.numbers(header.name) * scale
+        if (wild := np.flatnonzero(np.abs(values) > LARGEST_NUMBER)).size:
+            row = int(wild[0])
+            raise InputError(
+                shown(self.texts(header.name)[row]), f"a number of at most {LARGEST_NUMBER:g} in SI units", file=self.file,
+                line=self.line(row), column=header.text,
+            )  # fmt: skip
+        return np.asarray(values)
 
 
 def _advice(cell: str) -> str:

@@ -1,4 +1,4 @@
-"""The words of findings: one TOML file a subject, one table a code. Nothing else in coeflab words a finding.
+"""The words of findings and refusals: one TOML file a subject, one table a code. Nothing else in coeflab words a finding.
 
 A table has ``statement``, and may have ``rule`` (what it was held against) and ``advice``. ``{statistic}``, ``{threshold}``, ``{advice}``,
 ``{subject}`` and the names of facts stand in braces, with a format of Python where one is needed: ``{statistic:.0%}``. Numbers without
@@ -10,10 +10,11 @@ from __future__ import annotations
 
 from functools import cache
 from importlib.resources import files
+from pathlib import Path
 from string import Formatter
 from typing import Any, NamedTuple
 
-from coeflab.core.errors import PluginError
+from coeflab.core.errors import InputError, PluginError
 from coeflab.core.finding import Finding
 from coeflab.core.text.bounded import own_text
 from coeflab.core.text.toml import own_toml
@@ -95,3 +96,34 @@ def remark(finding: Finding) -> str:
         return f"{finding.code}: {finding.subject}"
     stop = "." if text.advice and text.statement[-1:] not in ".!?:;" else ""
     return f"{text.statement}{stop} {text.advice}".strip()
+
+
+def input_error(
+    code: str,
+    file: str | Path | None = None,
+    line: int | None = None,
+    column: str | None = None,
+    *,
+    key: str | None = None,
+    where: str = "",
+    kind: type[InputError] = InputError,
+    **facts: object,
+) -> InputError:
+    """An error about input, to be raised by the caller, in the words of its code.
+
+    Parameters
+    ----------
+    code : str
+        Subject and table of `core/texts`, such as ``tables.empty_file``.
+    file, line, column, key
+        See `InputError`.
+    where : str
+        Behind what was found, such as `` in row 7``.
+    kind : type of InputError
+    **facts
+        What the words name in braces.
+    """
+    subject, _, what = code.partition(".")
+    template = templates(subject)[what]
+    found, expected, advice = (template.get(part, "").format_map(facts) for part in ("found", "expected", "advice"))
+    return kind(found + where, expected, file=file, line=line, column=column, key=key, advice=advice)

@@ -11,8 +11,8 @@ from importlib.resources import files as resources
 import numpy as np
 from numpy.typing import NDArray
 
-from coeflab.core.errors import InputError
 from coeflab.core.text.bounded import own_text
+from coeflab.core.texts import input_error
 from coeflab.core.types import Array
 from coeflab.core.wording import identifier
 from coeflab.formats.c_program.source import law_of, numbers, remark, source
@@ -203,9 +203,7 @@ def refuse_without_mass(parameters: ParameterFile, target: str) -> None:
     InputError
     """
     if parameters.mass is None:
-        raise InputError(
-            f"no mass for {target}", "mass, centre and inertia_matrix", column="mass", advice="coeflab merge FILE --set mass=..."
-        )  # fmt: skip
+        raise input_error("formats.no_mass", column="mass", target=target)
 
 
 def lines(texts: Sequence[str]) -> bytes:

@@ -12,9 +12,10 @@ import numpy as np
 from coeflab.core.text.bounded import own_bytes
 from coeflab.core.types import Array
 from coeflab.core.wording import one_line
-from coeflab.formats.flat_law import RULES, FlatLaw, place_at
+from coeflab.formats.coded_thrusters import coded_thrusters
+from coeflab.formats.flat_law import RULES, FlatLaw, Readings, place_at, table_of
 from coeflab.law.domain import Domain
-from coeflab.law.force_law import AHEAD, BASE, ForceLaw, ForceTerm, Reading, place_of
+from coeflab.law.force_law import AHEAD, BASE, ForceLaw, ForceTerm, place_of
 from coeflab.law.symbols import CONTROLS
 from coeflab.law.terms import Factor, Term
 from coeflab.vehicle.parameter_file import ParameterFile
@@ -159,7 +160,7 @@ def _thrusters(parameters: ParameterFile) -> tuple[list[float], list[float], lis
     """Segments, thrusters, curves, whether each tilts, and the width of a segment."""
     every = [c for t in parameters.thrusters for c in (t.curve, t.torque_curve) if c is not None]
     width = 2 + max((len(s.coefficients) for c in every for s in c.segments), default=1)
-    segments, curves, rows = list[float](), list[int](), list[float]()
+    segments, curves = list[float](), list[int]()
 
     def add(c: ParameterCurve | None) -> None:
         first = len(segments) // width
@@ -170,14 +171,7 @@ def _thrusters(parameters: ParameterFile) -> tuple[list[float], list[float], lis
     for t in parameters.thrusters:
         add(t.curve)
         add(t.torque_curve)
-        rows += [
-            *t.position,
-            *t.direction,
-            *(t.tilt_axis or (0.0, 0.0, 0.0)),
-            t.tilt_low,
-            t.tilt_high,
-            float(t.handedness),
-        ]
+    rows = [x for row in coded_thrusters(parameters)[0] for x in row]
     return segments, rows, curves, [t.tilt_axis is not None for t in parameters.thrusters], width
 
 
@@ -207,19 +201,8 @@ def law_of(text: str) -> ForceLaw:
         if a["COURSE"][n]:
             factors, readings = (Factor("u", 1),), (("u", AHEAD),)
         component, into = place_at(a["PLACE"][n], np.reshape(a["SPEAKS"][: 3 * a["WINDS"]], (-1, 3)).tolist())
-        terms.append(
-            ForceTerm(
-                str(n),
-                component,
-                Term(factors),
-                a["VALUES"][n],
-                a["SPEED"][n],
-                1.0,
-                readings=readings,
-                hull=hull,
-                into=into,
-            )
-        )
+        whole = Term(factors), a["VALUES"][n], a["SPEED"][n], 1.0
+        terms.append(ForceTerm(str(n), component, *whole, readings=readings, hull=hull, into=into))
     ideal = np.zeros((6, 6, 6))
     for n in range(a["PRODUCTS"]):
         i, j, k = a["PRODUCT"][3 * n : 3 * n + 3]
@@ -227,23 +210,11 @@ def law_of(text: str) -> ForceLaw:
     return ForceLaw(tuple(terms), ideal)
 
 
-def _table(a: dict[str, Any], k: int, d: int, w: int) -> tuple[Domain, tuple[tuple[str, Reading], ...]]:
+def _table(a: dict[str, Any], k: int, d: int, w: int) -> tuple[Domain, Readings]:
     size = a["DIMENSION"][k]
     at = slice(d * k, d * k + size)
     names = tuple(BASE[v] for v in a["VARIABLE"][at])
-    rows = np.array(a["SPACES"][: w * a["SPACE_BEGIN"][a["TABLES"]]]).reshape(-1, w)[
-        a["SPACE_BEGIN"][k] : a["SPACE_END"][k]
-    ]
-    hull = Domain(
-        names,
-        np.array(a["LOW"][at]),
-        np.array(a["HIGH"][at]),
-        np.column_stack([rows[:, :size], rows[:, d]]),
-        RULES[a["RULE"][k]],
-    )
-    boxed = a["BOXED"][k]
-    readings = tuple(
-        (v, Reading(p, low, high, True) if boxed else Reading(p, table=str(k)))
-        for v, p, low, high in zip(names, a["PRIME"][at], a["LOW"][at], a["HIGH"][at], strict=True)
-    )
-    return hull, readings
+    rows = np.array(a["SPACES"][: w * a["SPACE_BEGIN"][a["TABLES"]]]).reshape(-1, w)
+    rows = rows[a["SPACE_BEGIN"][k] : a["SPACE_END"][k]]
+    spaces = np.column_stack([rows[:, :size], rows[:, d]])
+    return table_of(str(k), names, (a["LOW"][at], a["HIGH"][at]), spaces, a["RULE"][k], a["PRIME"][at], a["BOXED"][k])

@@ -15,13 +15,8 @@ from coeflab.vehicle.parameter_file import ParameterFile
 summary = "coefficients.csv: primed and SI values, U95, status, origin; a table_N.csv for each fitted model"
 citations = ("sname1950",)
 
-ANGLES = {
-    "v": "asin(v/U)",
-    "w": "asin(w/U)",
-    "dr": "dr",
-    "ds": "ds",
-    "db": "db",
-}  # over which a window is one of angles
+# Over which a window is one of angles.
+ANGLES = {"v": "asin(v/U)", "w": "asin(w/U)", "dr": "dr", "ds": "ds", "db": "db"}
 HEADER = (
     "symbol", "value [-]", "u95 [-]", "random [-]", "model_form [-]", "input [-]", "value_si", "unit_si", "status", "origin",
     "table", "estimator", "window_low", "window_high", "n_points", "citation",

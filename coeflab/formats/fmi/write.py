@@ -218,15 +218,7 @@ def compiled(sources: tuple[tuple[str, bytes], ...]) -> bytes | None:
             (Path(folder) / file).write_bytes(content)
         command = [
             compiler,
-            "-std=c99",
-            "-O2",
-            "-shared",
-            "-fPIC",
-            "-fvisibility=hidden",
-            "unit.c",
-            "-o",
-            "unit.lib",
-            "-lm",
+            *["-std=c99", "-O2", "-shared", "-fPIC", "-fvisibility=hidden", "unit.c", "-o", "unit.lib", "-lm"],
         ]
         try:
             done = subprocess.run(command, cwd=folder, capture_output=True, timeout=LONGEST, check=False)

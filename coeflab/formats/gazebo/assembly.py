@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import NamedTuple
 from xml.etree.ElementTree import Element
@@ -23,18 +24,7 @@ MOST_JOINTS = 400
 MODEL = "__model__"
 LINK = "base_link"  # the hull, in what coeflab writes
 STAND_IN = "coeflab_"  # links that coeflab writes for fins and propellers hold no mass of the vehicle's
-MOVING = (
-    "revolute",
-    "continuous",
-    "prismatic",
-    "screw",
-    "universal",
-    "ball",
-    "revolute2",
-    "gearbox",
-    "planar",
-    "floating",
-)
+MOVING = ("revolute", "continuous", "prismatic", "screw", "universal", "ball", "revolute2", "gearbox", "planar", "floating")  # fmt: skip
 
 
 class Pose(NamedTuple):
@@ -390,10 +380,12 @@ def collision_box(found: Assembly, file: Path | str | None = None) -> Array | No
     return high - low if np.all(np.isfinite(low)) else None
 
 
-def _half(shape: Element, file: Path | str | None) -> Array | None:
-    def size(tag: str, count: int = 1) -> tuple[float, ...]:
-        return numbers(shape.findtext(tag), (count,), f"{shape.tag} {tag}", file)
+def _size(shape: Element, file: Path | str | None, tag: str, count: int = 1) -> tuple[float, ...]:
+    return numbers(shape.findtext(tag), (count,), f"{shape.tag} {tag}", file)
 
+
+def _half(shape: Element, file: Path | str | None) -> Array | None:
+    size = partial(_size, shape, file)
     match shape.tag:
         case "box":
             return np.array(size("size", 3)) / 2.0
@@ -416,10 +408,7 @@ def shape_volume(shape: Element, file: Path | str | None = None) -> float | None
     InputError
         A size that is no number.
     """
-
-    def size(tag: str, count: int = 1) -> tuple[float, ...]:
-        return numbers(shape.findtext(tag), (count,), f"{shape.tag} {tag}", file)
-
+    size = partial(_size, shape, file)
     match shape.tag:
         case "box":
             return math.prod(size("size", 3))

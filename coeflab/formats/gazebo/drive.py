@@ -87,25 +87,17 @@ def drive(model: Element, parameters: ParameterFile, hull: str, length: float, r
         joint = _joint(model, control, hull, f"{STAND_IN}{control}", np.array(hinge))
         limit = SubElement(joint, "limit")
         most = LIMIT if surface is None else surface.limit
-        for tag, text in (("lower", number(-most)), ("upper", number(most)), ("effort", "1000")):
-            SubElement(limit, tag).text = text
+        _filled(limit, lower=number(-most), upper=number(most), effort="1000")
         if surface is not None and surface.rate is not None:
             SubElement(limit, "velocity").text = number(surface.rate)
         lift = SubElement(model, "plugin", LIFT_DRAG)
-        for tag, text in (
-            ("link_name", hull), ("control_joint_name", control), ("air_density", number(parameters.conditions.density)),
-            ("area", number(abs(area))), ("control_joint_rad_to_cl", number(np.sign(area))), ("cla", "0"), ("cda", "0"), ("cma", "0"),
-            ("cla_stall", "0"), ("cda_stall", "0"), ("cma_stall", "0"), ("forward", "1 0 0"), ("upward", " ".join(map(number, upward))),
-            ("cp", " ".join(map(number, place * FLU[:3] + 0.0))),
-        ):  # fmt: skip
-            SubElement(lift, tag).text = text
+        _filled(
+            lift, link_name=hull, control_joint_name=control, air_density=number(parameters.conditions.density), area=number(abs(area)),
+            control_joint_rad_to_cl=number(np.sign(area)), cla="0", cda="0", cma="0", cla_stall="0", cda_stall="0", cma_stall="0",
+            forward="1 0 0", upward=" ".join(map(number, upward)), cp=" ".join(map(number, place * FLU[:3] + 0.0)),
+        )  # fmt: skip
         controller = SubElement(model, "plugin", CONTROLLER)
-        for tag, text in (
-            ("joint_name", control),
-            ("sub_topic", f"joint/{control}"),
-            ("use_velocity_commands", "true"),
-        ):
-            SubElement(controller, tag).text = text
+        _filled(controller, joint_name=control, sub_topic=f"joint/{control}", use_velocity_commands="true")
         if surface is not None and surface.rate is not None:
             SubElement(controller, "cmd_max").text = number(surface.rate)
     for name, k in named(parameters).items():
@@ -113,14 +105,19 @@ def drive(model: Element, parameters: ParameterFile, hull: str, length: float, r
         _part(model, f"{STAND_IN}{name}", np.array(t.position), (0.02 * length, radius, radius))
         joint = _joint(model, name, hull, f"{STAND_IN}{name}", np.array(t.direction) * FLU[:3] + 0.0)
         limit = SubElement(joint, "limit")
-        for tag, text in (("lower", "-1e16"), ("upper", "1e16")):
-            SubElement(limit, tag).text = text
+        _filled(limit, lower="-1e16", upper="1e16")
         system = SubElement(model, "plugin", THRUSTER)
-        for tag, text in (
-            ("joint_name", name), ("topic", name), ("velocity_control", "true"), ("thrust_coefficient", "0.1"), ("propeller_diameter", number(max(2.0 * radius, 1e-3))),
-            ("fluid_density", number(parameters.conditions.density)), ("max_thrust_cmd", number(t.curve.at(t.curve.high))), ("min_thrust_cmd", number(t.curve.at(t.curve.low))),
-        ):  # fmt: skip
-            SubElement(system, tag).text = text
+        _filled(
+            system, joint_name=name, topic=name, velocity_control="true", thrust_coefficient="0.1",
+            propeller_diameter=number(max(2.0 * radius, 1e-3)), fluid_density=number(parameters.conditions.density),
+            max_thrust_cmd=number(t.curve.at(t.curve.high)), min_thrust_cmd=number(t.curve.at(t.curve.low)),
+        )  # fmt: skip
+
+
+def _filled(parent: Element, **texts: str) -> None:
+    """Add an element for each text, in their order."""
+    for tag, text in texts.items():
+        SubElement(parent, tag).text = text
 
 
 def named(parameters: ParameterFile) -> dict[str, int]:

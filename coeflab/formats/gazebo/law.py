@@ -7,7 +7,6 @@ and below (Coriolis of <fluid_added_mass>), put together in Hydrodynamics.cc, Co
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -17,10 +16,11 @@ import numpy as np
 
 from coeflab.core.errors import InputError, shown
 from coeflab.core.text.xml import numbers
+from coeflab.core.texts import input_error
 from coeflab.core.types import Array, brief, locking
+from coeflab.formats.gazebo.assembly import pose_of
 from coeflab.formats.gazebo.systems import GZ_SIM, System, system_of
 from coeflab.law.rigid_body import momentum_force
-from coeflab.law.transforms import rotation
 
 FORCES, VELOCITIES = "xyzkmn", "UVWPQR"
 SYSTEM = {"filename": "gz-sim-hydrodynamics-system", "name": "gz::sim::systems::Hydrodynamics"}
@@ -122,10 +122,9 @@ def hydrodynamics(root: Element, file: Path | str | None = None) -> tuple[Elemen
     """
     found = [e for e in root.iter("plugin") if "hydrodynamics" in (e.get("filename", "") + e.get("name", "")).lower()]
     if len(found) != 1:
-        raise InputError(
-            f"{len(found)} Hydrodynamics plugins", "one <plugin> of the system Hydrodynamics", file=file,
-            advice="Keep one vehicle in the file." if found else "",
-        )  # fmt: skip
+        raise input_error(
+            "formats.several_plugins", file, count=len(found), advice="Keep one vehicle in the file." if found else ""
+        )
     return found[0], system_of(found[0].get("filename", ""), found[0].get("name", ""), file)
 
 
@@ -155,12 +154,12 @@ def read_gz_link(root: Element, file: Path | str | None = None) -> GzLink:
     plugin, system = hydrodynamics(root, file)
     name = (plugin.findtext("link_name") or "").strip()
     if not name:
-        raise InputError("no <link_name>", "the link that the plugin acts on", file=file)
+        raise input_error("formats.no_link_name", file)
     link = next((e for e in root.iter("link") if e.get("name") == name.rpartition("::")[2]), None)
     inertial = None if link is None else link.find("inertial")
-    pose = _pose(inertial, file)
+    pose = pose_of(inertial, file)
     axes = {(i, j): _one(inertial, f"inertia/i{'xyz'[i]}{'xyz'[j]}", file) for i in range(3) for j in range(i, 3)}
-    inertia, turn = symmetric(axes), rotation(*pose[3:])
+    inertia = symmetric(axes)
     model = next((e.get("name", "") for e in root.iter("model")), root.get("name", "") if root.tag == "robot" else "")
     density = next((v for tag in DENSITIES for e in root.iter(tag) if (v := numbers(e.text, (1,), tag, file)[0])), None)
     switch, on = system.switch
@@ -176,23 +175,13 @@ def read_gz_link(root: Element, file: Path | str | None = None) -> GzLink:
         disable_added_mass=system.defaults is None and _flag(plugin, "disable_added_mass", file),
         fluid_mass=_fluid(inertial, file),
         mass=_one(inertial, "mass", file),
-        centre=np.array(pose[:3]),
-        inertia=inertia if inertia is None or not any(pose[3:]) else turn @ inertia @ turn.T,
+        centre=pose.place,
+        inertia=None if inertia is None else pose.turn @ inertia @ pose.turn.T,
         density=density,
         resistance=_one(plugin, RESISTANCE, file) or 0.0,
         system=system,
         missing=missing,
     )
-
-
-def _pose(inertial: Element | None, file: Path | str | None) -> tuple[float, ...]:
-    """Place and angles of the centre of gravity, m and rad."""
-    element = None if inertial is None else inertial.find("pose")
-    if element is None or not (element.text or "").split():
-        return (0.0,) * 6
-    pose = numbers(element.text, (6,), "pose", file)
-    degrees = (element.get("degrees") or "").strip().lower() in ("true", "1")
-    return (*pose[:3], *map(math.radians, pose[3:])) if degrees else pose
 
 
 def _damping(

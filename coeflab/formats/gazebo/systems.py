@@ -13,7 +13,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from coeflab.core.errors import InputError, shown
+from coeflab.core.errors import shown
+from coeflab.core.texts import input_error
 from coeflab.core.types import brief
 
 Entry = tuple[int, int, int, int]
@@ -95,8 +96,7 @@ def system_of(filename: str, name: str, file: Any = None) -> System:
     found = [s for s in SYSTEMS if s.files.fullmatch(library) and s.classes.fullmatch(name.strip())]
     if found:
         return found[0]
-    raise InputError(
-        f"the plugin {shown(filename)}, class {shown(name)}, whose law is not known here",
-        f"the Hydrodynamics of {', '.join(s.name for s in SYSTEMS[:-1])} or {SYSTEMS[-1].name}, by file and class name", file=file,
-        column="<plugin>", advice="Other plugins give the same tags another meaning: write the numbers as gz-sim's.",
+    raise input_error(
+        "formats.unknown_plugin", file, column="<plugin>", filename=shown(filename), name=shown(name),
+        systems=", ".join(s.name for s in SYSTEMS[:-1]), other=SYSTEMS[-1].name,
     )  # fmt: skip

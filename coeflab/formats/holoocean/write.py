@@ -22,6 +22,7 @@ from numpy.typing import NDArray
 
 from coeflab.core.errors import InputError
 from coeflab.core.text.json import parse_json
+from coeflab.core.texts import input_error
 from coeflab.core.types import Array, brief
 from coeflab.core.wording import identifier
 from coeflab.formats.export import unheld
@@ -165,7 +166,7 @@ def _fitted(parameters: ParameterFile) -> tuple[Torpedo, ForceLaw, tuple[str, ..
     """
     p, law = parameters, force_law(parameters)
     if p.mass is None:
-        raise InputError("no mass", "a mass, for HoloOcean computes the torpedo's diameter and damping from it")
+        raise input_error("formats.holoocean_without_mass")
     length = p.scaling.length
     diam = float(np.sqrt(6.0 * p.mass.mass / (np.pi * p.conditions.density * length)))
     if diam >= length:

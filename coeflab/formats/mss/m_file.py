@@ -21,6 +21,7 @@ from coeflab.core.arithmetic import ArithmeticProblem, evaluate
 from coeflab.core.errors import InputError, shown
 from coeflab.core.limits import M_FILE_BYTES, bounded_number, positive_number
 from coeflab.core.text.toml import read_text
+from coeflab.core.texts import input_error
 from coeflab.core.types import brief
 from coeflab.core.wording import one_line
 from coeflab.formats import NoDensityError
@@ -232,7 +233,7 @@ def read_m_file(path: Path) -> MFile:
     called = _spheroids(text, names, out, path)
     out = replace(out, calls=called)
     if not out.derivatives:
-        raise InputError("no derivative such as Yv or Zwdot", "plain assignments of SNAME derivatives", file=path)
+        raise input_error("formats.no_derivatives", path)
     return out
 
 
@@ -260,9 +261,7 @@ def _spheroids(text: str, names: Mapping[str, float], out: MFile, path: Path) ->
             a, b = (float(evaluate(x, names)) for x in arguments[:2])
             roll = float(evaluate(arguments[3], names)) if match[2] == "imlay61" and len(arguments) > 3 else 0.0
         except (ArithmeticProblem, ValueError, IndexError) as why:
-            raise InputError(
-                f"{shown(statement)}: {why}", "semi-axes that the file states", file=path, line=line
-            ) from None
+            raise input_error("formats.no_semi_axes", path, line, statement=shown(statement), why=why) from None
         if not a > b > 0.0 or positive_number(a) or positive_number(b):
             raise InputError(f"semi-axes {a:g} and {b:g}", "a above b above zero", file=path, line=line)
         mass = 4.0 / 3.0 * math.pi * SPHEROID_DENSITY[match[2]] * a * b**2
@@ -314,9 +313,8 @@ def _value(a: Assignment, symbol: str, names: dict[str, float], path: Path) -> f
         names[a.target] = float(evaluate(a.expression, names))
     except ArithmeticProblem as why:
         if symbol or _literal(a.expression):
-            raise InputError(
-                f"{shown(a.expression)}: {why}", f"{a.target} as a number, or + - * / ^ of numbers and names above",
-                file=path, line=a.line,
+            raise input_error(
+                "formats.no_number", path, a.line, expression=shown(a.expression), why=why, target=a.target
             ) from None  # fmt: skip
         names.pop(a.target, None)
         return None

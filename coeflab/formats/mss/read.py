@@ -9,12 +9,12 @@ from pathlib import Path
 import numpy as np
 
 from coeflab.core.axes import Datum
-from coeflab.core.errors import InputError
 from coeflab.core.finding import Finding, Severity
 from coeflab.core.limits import JSON_BYTES
 from coeflab.core.provenance import InputFile, sha256_of
 from coeflab.core.table import Check
 from coeflab.core.text.toml import read_text
+from coeflab.core.texts import input_error
 from coeflab.core.units import STANDARD_GRAVITY
 from coeflab.formats.imported_file import MODEL_ORIGIN, Law, Stated, imported_file, matrix_doubts
 from coeflab.formats.left_out import left_out
@@ -151,7 +151,7 @@ def _own_conditions(found: MFile, path: Path) -> tuple[Scaling, Conditions]:
     n = found.numbers
     missing = [k for k in ("rho", "U0", "L", "x_ref", "y_ref", "z_ref") if k not in n]
     if missing:
-        raise InputError(f"no {', '.join(missing)}", "every fact that the exporter writes", file=path)
+        raise input_error("formats.facts_lack", path, missing=", ".join(missing))
     return Scaling(n["L"], found.texts.get("L_name", "L")), Conditions(n["rho"], n["U0"], n.get("viscosity"))
 
 
@@ -277,7 +277,6 @@ APART = (0.2, 5.0)  # B over m g of what may be a buoyancy; beyond, B is a bread
 BUOYANCIES = ("B", "Buoyancy", "nabla", "Vol", "V_disp")
 CENTRES_B = ("xB", "x_B", "xb", "yB", "y_B", "yb", "zB", "z_B", "zb")
 EQUATIONS = re.compile(r"tau\w*|D|Dmtrx|g|X_\w+|Y_\w+|Z_\w+|K_\w+|M_\w+|N_\w+")
-FORWARD, TRANSVERSE = ("xG", "x_G", "xg"), ("Iy", "Iyy", "Iz", "Izz")
 READ = (*DENSITIES, *GRAVITIES, *LENGTHS, "U0", "U", "r2", "r3", "r4", "r5")
 OWN_NUMBERS = (*READ, *MASSES, "coeflab", "x_ref", "y_ref", "z_ref", "viscosity", "mxG", "xG", "yG", "zG", "I_transverse",
                *(f"{kind}_{c}" for kind in ("limit", "rate") for c in CONTROLS),

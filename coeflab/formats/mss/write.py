@@ -48,27 +48,10 @@ adds_coriolis = False
 holds = frozenset({"hydrostatics", "tables", "thrusters", "surfaces"})
 not_held, missing = not_written, missing_water
 
-OWN = frozenset(
-    {
-        "nu",
-        "delta",
-        "command",
-        "tau",
-        "tabled",
-        "held",
-        "tables",
-        "driven",
-        "curve",
-        "thrusters",
-        "h",
-        "MA",
-        "U",
-        "course",
-        *MOTIONS,
-        *COMPONENTS,
-        *CONTROLS,
-    }
-)
+# Names of the function that no vehicle may have.
+OWN = frozenset((
+    *["nu", "delta", "command", "tau", "tabled", "held", "tables", "driven", "curve", "thrusters", "h", "MA", "U", "course"], *MOTIONS, *COMPONENTS, *CONTROLS,
+))  # fmt: skip
 _PLACES = {"prime": "h.", "rest": "h.rest.", "potential": "h.ideal."}
 _HEADINGS = {
     "prime": "Primed by rho and L: totals, potential part included",

@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 
 from coeflab.core.errors import InputError
 from coeflab.core.text.xml import numbers, parse_xml, serialised
+from coeflab.core.texts import input_error
 from coeflab.core.types import Array
 from coeflab.core.wording import identifier, one_line
 from coeflab.formats.export import missing_mass, unheld
@@ -92,7 +93,7 @@ def _fitted(parameters: ParameterFile) -> tuple[_Geom, ForceLaw]:
     law = force_law(parameters)
     masses, rho = np.diag(water_inertia(parameters).matrix)[:3], parameters.conditions.density
     if np.any(masses <= 0.0):
-        raise InputError("no added mass along x, y and z", "an added mass, for the ellipsoid takes its shape from it")
+        raise input_error("formats.no_added_mass")
     hull, miss = ellipsoid_of_masses(masses, rho)
     if miss > HELD:
         raise InputError(f"added masses {', '.join(f'{m:.4g}' for m in masses)} kg", "those of some ellipsoid")
@@ -408,10 +409,7 @@ def left_out(parameters: ParameterFile) -> tuple[InputError, tuple[str, ...]] | 
     geom, _ = _fitted(parameters)
     if not geom.refused:
         return None
-    why = InputError(
-        geom.refused, "a damping of the same sign in both: a fluid ellipsoid has one lift, one drag and no linear damping of turning",
-        column="coefficients", advice="Use a target that can express the law: fmi, xdyn, mss or gazebo.",
-    )  # fmt: skip
+    why = input_error("formats.damping_of_two_signs", column="coefficients", refused=geom.refused)
     return why, geom.left_out
 
 

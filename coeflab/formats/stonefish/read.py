@@ -14,12 +14,12 @@ from xml.etree.ElementTree import Element
 import numpy as np
 
 from coeflab.core.axes import Datum
-from coeflab.core.errors import InputError
 from coeflab.core.finding import Finding, Severity
 from coeflab.core.limits import XML_BYTES
 from coeflab.core.provenance import InputFile, sha256_of
 from coeflab.core.text.toml import read_text
 from coeflab.core.text.xml import numbers, read_xml
+from coeflab.core.texts import input_error
 from coeflab.core.types import Array
 from coeflab.core.wording import one_line
 from coeflab.formats import NoDensityError
@@ -65,8 +65,8 @@ def read(path: Path, density: float | None = None) -> ParameterFile:
     root = read_xml(path)
     robots = list(root.iter("robot"))
     if len(robots) != 1:
-        raise InputError(
-            f"{len(robots)} robots", "one <robot>", file=path, advice="Keep one vehicle in the file." if robots else ""
+        raise input_error(
+            "formats.several_robots", path, count=len(robots), advice="Keep one vehicle in the file." if robots else ""
         )
     robot = robots[0]
     stated = [_one(e, "density", path) for e in root.iter("water") if e.get("density") is not None]

@@ -29,8 +29,8 @@ from xml.etree.ElementTree import Element, SubElement
 import numpy as np
 from numpy.typing import NDArray
 
-from coeflab.core.errors import InputError
 from coeflab.core.text.xml import numbers, parse_xml, serialised
+from coeflab.core.texts import input_error
 from coeflab.core.types import Array, brief
 from coeflab.core.wording import identifier, one_line
 from coeflab.formats.export import covered_grid, missing_mass, unheld
@@ -311,9 +311,7 @@ def _axes(parameters: ParameterFile) -> Array:
         axes = found if miss <= HELD else None
     if parameters.mass is None:
         if axes is None:
-            raise InputError(
-                "neither mass nor the added masses of an ellipsoid", "one of them, for the size of the mesh"
-            )
+            raise input_error("formats.no_size_of_mesh")
         return axes
     volume = parameters.mass.mass / rho
     if axes is not None:
@@ -396,7 +394,7 @@ def _read(files: Mapping[str, bytes]) -> StonefishLink:
     water, body = root.find("environment/ocean/water"), root.find("robot/base_link")
     drags = None if body is None else body.find("hydrodynamics")
     if water is None or body is None or drags is None:
-        raise InputError("no robot", "a robot with <hydrodynamics> in an ocean")
+        raise input_error("formats.no_robot")
     rows = [r.split() for r in next(c for n, c in files.items() if n.endswith(".obj")).decode().splitlines()]
     vertices = np.array([r[1:] for r in rows if r[0] == "v"], dtype=np.float64)
     faces = np.array([r[1:] for r in rows if r[0] == "f"], dtype=np.int64) - 1

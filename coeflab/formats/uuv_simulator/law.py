@@ -23,6 +23,7 @@ from coeflab.core.arithmetic import ArithmeticProblem, evaluate
 from coeflab.core.errors import InputError, shown
 from coeflab.core.limits import XACRO_DEEPEST, XACRO_TEXT, XACRO_WHOLE
 from coeflab.core.text.xml import numbers
+from coeflab.core.texts import input_error
 from coeflab.core.types import Array, brief, locking
 from coeflab.formats.gazebo.law import symmetric
 from coeflab.formats.left_out import SILENT
@@ -64,9 +65,7 @@ class Xacro(Mapping[str, float]):
             or more than 64 KiB of text.
         """
         if self._depth > XACRO_DEEPEST:
-            raise InputError(
-                f"properties in properties, more than {XACRO_DEEPEST} deep", "plain properties", file=self._file
-            )
+            raise input_error("formats.deep_properties", self._file, xacro_deepest=XACRO_DEEPEST)
         self._depth += 1
         out, at = [], 0
         for piece in _PIECE.finditer(raw):
@@ -75,12 +74,10 @@ class Xacro(Mapping[str, float]):
         self._depth -= 1
         joined = "".join([*out, raw[at:]])
         if len(joined) > XACRO_TEXT:
-            raise InputError(f"{len(joined)} characters", f"at most {XACRO_TEXT} in one text", file=self._file)
+            raise input_error("formats.long_text", self._file, count=len(joined), xacro_text=XACRO_TEXT)
         self._letters += len(joined)
         if self._letters > XACRO_WHOLE:
-            raise InputError(
-                f"properties that unfold to {self._letters} characters", f"at most {XACRO_WHOLE}", file=self._file
-            )
+            raise input_error("formats.unfolds_too_far", self._file, letters=self._letters, xacro_whole=XACRO_WHOLE)
         return joined
 
     def _value(self, expression: str | None, argument: str | None) -> str:
@@ -92,16 +89,11 @@ class Xacro(Mapping[str, float]):
         try:
             return repr(float(evaluate(name.replace("**", "^"), self, _FUNCTIONS)))
         except (ArithmeticProblem, ValueError) as why:
-            raise InputError(
-                f"{shown(f'${{{name}}}')}: {why}", "arithmetic of numbers and properties", file=self._file
-            ) from None
+            raise input_error("formats.no_arithmetic", self._file, text=shown(f"${{{name}}}"), why=why) from None
 
     def _known(self, among: Mapping[str, str], name: str) -> str:
         if name not in among:
-            raise InputError(
-                f"{shown(name)}, which this file does not define", "every property and argument in the file", file=self._file,
-                advice="Run xacro first and check the URDF that it prints.",
-            )  # fmt: skip
+            raise input_error("formats.undefined_property", self._file, name=shown(name))
         if among is self._raw and name in self._twice:
             raise InputError(f"{shown(name)} with two values", "every property once", file=self._file)
         key = (id(among), name)
@@ -199,10 +191,9 @@ def read_fossen_link(root: Element, file: Path | str | None = None) -> FossenLin
     x = Xacro(root, file)
     found = [e for e in root.iter("link") if e.find("hydrodynamic_model") is not None]
     if len(found) != 1:
-        raise InputError(
-            f"{len(found)} links with a <hydrodynamic_model>", "one", file=file,
-            advice="Keep one vehicle in the file." if found else "",
-        )  # fmt: skip
+        raise input_error(
+            "formats.several_models", file, count=len(found), advice="Keep one vehicle in the file." if found else ""
+        )
     element, model = found[0], found[0].find("hydrodynamic_model")
     _refuse_shapes(model, file)
     name = element.get("name", "")
@@ -214,7 +205,7 @@ def read_fossen_link(root: Element, file: Path | str | None = None) -> FossenLin
         for i in range(3)
         for j in range(i, 3)
     }
-    inertia, turn = symmetric(axes), rotation(*_angles(inertial, x, file))
+    inertia, turn = symmetric(axes), rotation(*_origin(inertial, "rpy", x, file))
     if inertia is not None:
         inertia = turn @ inertia @ turn.T
     return FossenLink(
@@ -223,7 +214,7 @@ def read_fossen_link(root: Element, file: Path | str | None = None) -> FossenLin
         linear=read["linear_damping"],
         forward=read["linear_damping_forward_speed"],
         quadratic=read["quadratic_damping"],
-        centre=FRD * np.array(_origin(inertial, x, file)) + 0.0,
+        centre=FRD * np.array(_origin(inertial, "xyz", x, file)) + 0.0,
         reference=FRD * np.array(_reference(root, name, x, file)) + 0.0,
         density=next(
             (_scalar(e, "fluid_density", x, file) for e in root.iter() if e.find("fluid_density") is not None), None
@@ -239,7 +230,7 @@ def _refuse_shapes(model: Element | None, file: Path | str | None) -> None:
     """Refuse models whose coefficients the plugin computes from a shape."""
     kind = "" if model is None else (model.findtext("type") or "").strip()
     if kind != "fossen":
-        raise InputError(f"<type>{shown(kind)}", 'a <hydrodynamic_model> of type "fossen"', file=file)
+        raise input_error("formats.another_type", file, sort=shown(kind))
 
 
 def _matrix(model: Element | None, tag: str, x: Xacro, file: Path | str | None) -> Array:
@@ -261,17 +252,11 @@ def _attribute(parent: Element | None, tag: str, name: str, x: Xacro, file: Path
     return None if text is None else numbers(x.text(text), (1,), f"{tag} {name}", file)[0]
 
 
-def _origin(parent: Element | None, x: Xacro, file: Path | str | None) -> tuple[float, ...]:
+def _origin(parent: Element | None, name: str, x: Xacro, file: Path | str | None) -> tuple[float, ...]:
+    """Place, ``xyz``, m, or roll, pitch and yaw, ``rpy``, rad, of an origin."""
     element = None if parent is None else parent.find("origin")
-    text = None if element is None else element.get("xyz")
-    return (0.0, 0.0, 0.0) if text is None else numbers(x.text(text), (3,), "origin xyz", file)
-
-
-def _angles(parent: Element | None, x: Xacro, file: Path | str | None) -> tuple[float, ...]:
-    """Roll, pitch and yaw of the axes of inertia, rad."""
-    element = None if parent is None else parent.find("origin")
-    text = None if element is None else element.get("rpy")
-    return (0.0, 0.0, 0.0) if text is None else numbers(x.text(text), (3,), "origin rpy", file)
+    text = None if element is None else element.get(name)
+    return (0.0, 0.0, 0.0) if text is None else numbers(x.text(text), (3,), f"origin {name}", file)
 
 
 def _reference(root: Element, link: str, x: Xacro, file: Path | str | None) -> tuple[float, ...]:
@@ -279,5 +264,5 @@ def _reference(root: Element, link: str, x: Xacro, file: Path | str | None) -> t
         parent, child = joint.find("parent"), joint.find("child")
         fixed = joint.get("type") == "fixed" and parent is not None and child is not None
         if fixed and (parent.get("link"), child.get("link")) == (link, "reference_point"):  # type: ignore[union-attr]
-            return _origin(joint, x, file)
+            return _origin(joint, "xyz", x, file)
     return (0.0, 0.0, 0.0)

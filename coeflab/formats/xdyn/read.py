@@ -1,19 +1,10 @@
-"""Models of xdyn and lxdyn: one body's inertia, added mass, damping and manoeuvring expressions, multiplied out.
-
-The force law of an xdyn body, multiplied out into products of velocities about one point.
-
-Sums of products of velocities: what an expression says when it is multiplied out.
-"""
+"""Models of xdyn and lxdyn: one body's inertia, added mass, damping and manoeuvring expressions, multiplied out."""
 
 from __future__ import annotations
 
-import math
 import re
-from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass
-from functools import partial
+from collections.abc import Iterable
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
@@ -26,298 +17,25 @@ from coeflab.core.provenance import InputFile, sha256_of
 from coeflab.core.table import Check
 from coeflab.core.text.toml import read_text
 from coeflab.core.text.yaml import number, read_yaml
-from coeflab.core.types import Array, brief
+from coeflab.core.texts import input_error
+from coeflab.core.types import Array
 from coeflab.core.wording import one_line
 from coeflab.formats.exported_law import sname
 from coeflab.formats.imported_file import Law, Stated, imported_file, matrix_doubts
 from coeflab.formats.left_out import left_out
-from coeflab.formats.xdyn.actuators import limited, read_limits
-from coeflab.formats.xdyn.law import Manoeuvring, XdynBody, settled, xdyn_body
+from coeflab.formats.xdyn.actuators import read_limits
+from coeflab.formats.xdyn.law import XdynBody, xdyn_body
+from coeflab.formats.xdyn.multiplied_out import MultipliedOut, multiplied_out
+from coeflab.formats.xdyn.products import Product
 from coeflab.law.added_mass import definiteness
-from coeflab.law.force_law import AHEAD
 from coeflab.law.rigid_body import MassProperties, about_another, ideal_quadratics, inertia_doubt
 from coeflab.law.scaling import Conditions, Scaling, powers_of
-from coeflab.law.symbols import COMPONENTS, CONTROLS, LINEAR, MOTIONS, derivative
+from coeflab.law.symbols import COMPONENTS, CONTROLS, MOTIONS, derivative
 from coeflab.law.terms import parse_suffix
-from coeflab.law.transforms import force_transfer, moved
+from coeflab.law.transforms import moved
 from coeflab.vehicle.imported_numbers import gravity
 from coeflab.vehicle.parameter_file import ParameterFile
 from coeflab.vehicle.parameter_parts import ParameterSurface
-
-Product = tuple[tuple[str, int], ...]
-MOST = 4000
-HIGHEST = 12
-NOTHING = 1e-15
-SIGN, SIDES = "course", ("course + 1", "course - 1")
-RESISTANCE: Product = (("U", 2),)
-
-
-@brief
-@dataclass(frozen=True, slots=True, eq=False)
-class Products:
-    """Numbers by product; a product is names with their powers, sorted, ``|v|`` a name of its own.
-
-    Attributes
-    ----------
-    terms : mapping of product to float
-    """
-
-    terms: Mapping[Product, float]
-
-    @classmethod
-    def of(cls, name: str) -> Products:
-        """One name."""
-        return cls({((name, 1),): 1.0})
-
-    @property
-    def number(self) -> float | None:
-        """The value where no name is left."""
-        return self.terms.get((), 0.0) if set(self.terms) <= {()} else None
-
-    def _one(self, doing: str) -> tuple[Product, float]:
-        if len(self.terms) != 1:
-            raise ArithmeticProblem(f"{doing} a sum")
-        return next(iter(self.terms.items()))
-
-    def __add__(self, other: Products | float) -> Products:
-        out = dict(self.terms)
-        for product, value in as_products(other).terms.items():
-            out[product] = out.get(product, 0.0) + value
-        return Products({p: v for p, v in out.items() if v != 0.0})
-
-    __radd__ = __add__
-
-    def __neg__(self) -> Products:
-        return self * -1.0
-
-    def __sub__(self, other: Products | float) -> Products:
-        return self + as_products(other) * -1.0
-
-    def __rsub__(self, other: float) -> Products:
-        return as_products(other) + self * -1.0
-
-    def __mul__(self, other: Products | float) -> Products:
-        factor = as_products(other).terms
-        if len(factor) * len(self.terms) > MOST:
-            raise ArithmeticProblem(f"more than {MOST} products")
-        out: dict[Product, float] = {}
-        for a, x in self.terms.items():
-            for b, y in factor.items():
-                product = _joined(a, b)
-                out[product] = out.get(product, 0.0) + x * y
-        return Products({p: v for p, v in out.items() if v != 0.0})
-
-    __rmul__ = __mul__
-
-    def __pow__(self, power: Products | float) -> Products:
-        exponent = as_products(power).number
-        if exponent is None or exponent != int(exponent) or abs(exponent) > HIGHEST:
-            raise ArithmeticProblem(f"a power that is no whole number up to {HIGHEST}")
-        if exponent < 0:
-            product, value = self._one("dividing by")
-            if value == 0.0:
-                raise ArithmeticProblem("division by zero")
-            return Products({tuple((n, int(k * exponent)) for n, k in product): value**exponent})
-        out = as_products(1.0)
-        for _ in range(int(exponent)):
-            out = out * self
-        return out
-
-    def __truediv__(self, other: Products | float) -> Products:
-        return self * as_products(other) ** -1.0
-
-    def __rtruediv__(self, other: float) -> Products:
-        return as_products(other) * self**-1.0
-
-    def __abs__(self) -> Products:
-        if not self.terms:
-            return self
-        product, value = self._one("the absolute value of")
-        named = ((n if n.startswith("|") or n == "U" else f"|{n}|", k) for n, k in product)
-        return Products({_joined((), tuple(named)): abs(value)})
-
-    def same(self, other: Products) -> bool:
-        """Whether both are equal to rounding, term by term."""
-        apart = (self - other).terms
-        return all(abs(v) <= 1e-12 * max(abs(self.terms.get(p, 0.0)), NOTHING) for p, v in apart.items())
-
-
-def as_products(value: Products | float) -> Products:
-    """A number as a sum of products."""
-    if isinstance(value, Products):
-        return value
-    return Products({(): float(value)} if value else {})
-
-
-def _joined(a: Product, b: Product) -> Product:
-    powers: dict[str, int] = {}
-    for name, k in (*a, *b):
-        powers[name] = powers.get(name, 0) + k
-    return tuple(sorted((n, k) for n, k in powers.items() if k))
-
-
-FLOOR = 1e-9
-MARK = "@"
-
-
-@brief
-@dataclass(frozen=True, slots=True, eq=False)
-class MultipliedOut:
-    """The law as sums of products.
-
-    Attributes
-    ----------
-    point : (3,) array
-        That the moments are about and the velocities are of, from the origin of the body frame, m.
-    components : tuple of 6 Products
-        X Y Z K M N in SI over ``u`` ... ``r``, ``|u|`` ... , ``U`` and control angles.
-    constants : dict of name to float
-        Keys of the manoeuvring models that are plain numbers.
-    notes : tuple of str
-    """
-
-    point: Array
-    components: tuple[Products, ...]
-    constants: dict[str, float]
-    notes: tuple[str, ...]
-
-
-def multiplied_out(body: XdynBody) -> MultipliedOut:
-    """Everything in the body's hydrodynamic models, about the manoeuvring model's point where its expressions use the
-    velocities there, else about the centre of gravity.
-
-    Raises
-    ------
-    ArithmeticProblem
-        An expression that is no sum of products of velocities, their absolute values, powers of the speed and angles.
-    """
-    notes: list[str] = []
-    constants: dict[str, float] = {}
-    if len(body.manoeuvring) == 1 and not body.damping:
-        model = body.manoeuvring[0]
-        found = _components(body, model, True, notes, constants)
-        if found is not None:
-            return MultipliedOut(model.point, found, constants, tuple(dict.fromkeys(notes)))
-        notes.clear()
-    total = [as_products(0.0)] * 6
-    for model in body.manoeuvring:
-        found = _components(body, model, False, notes, constants) or tuple(total)
-        total = [a + b for a, b in zip(total, _moved(found, body.centre - model.point), strict=True)]
-    for power, matrix in body.damping:
-        at_centre = force_transfer(body.centre - body.damping_point) @ matrix
-        for j, name in enumerate(MOTIONS):
-            motion = Products.of(name) if power == 1 else Products.of(name) * abs(Products.of(name))
-            total = [a + motion * -float(at_centre[i, j]) for i, a in enumerate(total)]
-    return MultipliedOut(body.centre, tuple(total), constants, tuple(dict.fromkeys(notes)))
-
-
-def _moved(components: tuple[Products, ...], shift: Array) -> tuple[Products, ...]:
-    transfer = force_transfer(shift)
-    rows = []
-    for row in transfer:
-        out = as_products(0.0)
-        for factor, component in zip(row, components, strict=True):
-            out = out + component * float(factor)
-        rows.append(out)
-    return tuple(rows)
-
-
-def _components(
-    body: XdynBody, model: Manoeuvring, at_point: bool, notes: list[str], constants: dict[str, float]
-) -> tuple[Products, ...] | None:
-    """X Y Z K M N of one model; with ``at_point`` over the velocities at its point, None if others are used too."""
-    marked = MARK if at_point else ""
-    shift = model.point - body.centre
-    expected = dict(zip(LINEAR, _velocities_at(shift), strict=True)) if at_point else {}
-    still = not np.any(shift)
-
-    def state(name: str, _time: Any) -> Products:
-        return Products.of(name + (marked if still and name in LINEAR else ""))
-
-    def finish(_name: str, value: Any) -> Any:
-        if not isinstance(value, Products):
-            return value
-        number = value.number
-        if number is not None:
-            return number
-        if dict(value.terms) == {((SIDES[0], 1),): 0.5, ((SIDES[1], 1),): -0.5}:
-            return Products.of(SIGN)
-        at = next((m for m, form in expected.items() if not still and value.same(form)), None)
-        return value if at is None else Products.of(at + marked)
-
-    functions: dict[str, Callable[..., Any]] = {m: partial(state, m) for m in MOTIONS}
-    functions |= {"abs": partial(_absolute, f"u{marked}"), "sqrt": partial(_root, notes)}
-    functions |= {f: partial(_of_number, f) for f in ("exp", "log", "cos", "sin")}
-    given = {**body.given(model), **{c: Products.of(c) for c in model.commands if c in CONTROLS}}
-    free = {limited(c): c for c in read_limits(model.expressions) if c in model.commands}
-    try:
-        known = settled({**model.expressions, **free}, given, functions, finish)
-    except ArithmeticProblem:
-        if at_point:
-            return None
-        raise
-    constants |= {k: v for k, v in known.items() if isinstance(v, float) and k in model.expressions}
-    out = tuple(as_products(known[c]) for c in COMPONENTS)
-    names = {n.strip("|") for c in out for p in c.terms for n, _ in p}
-    if at_point and names & set(LINEAR):
-        return None
-    plain = [{tuple(sorted((n.replace(MARK, ""), k) for n, k in p)): v for p, v in c.terms.items()} for c in out]
-    if RESISTANCE in plain[0]:
-        notes.append("X with U^2 alone pushes ahead on a course astern in the file; here it is drag there too")
-    signed = tuple(sorted((*RESISTANCE, (SIGN, 1))))
-    if signed in plain[0]:
-        plain[0][RESISTANCE] = plain[0].get(RESISTANCE, 0.0) + plain[0].pop(signed)
-    return tuple(Products(c) for c in plain)
-
-
-def _absolute(ahead: str, value: Any) -> Any:
-    """An absolute value: of one product, or of the two of which the sign of the course is made (`formats.exported_law.COURSE`)."""
-    if isinstance(value, Products) and len(value.terms) == 2:
-        share = {p: v / AHEAD.prime if p else v for p, v in value.terms.items()}
-        for name, side in zip(SIDES, (1.0, -1.0), strict=True):
-            if share == {tuple(sorted(((ahead, 1), ("U", -1)))): 1.0, (): side}:
-                return Products.of(name)
-    return abs(value)
-
-
-def _velocities_at(shift: Array) -> tuple[Products, ...]:
-    """Velocities u v w at a point ``shift`` from the centre of gravity, over the states of xdyn."""
-    u, v, w, p, q, r = (Products.of(m) for m in MOTIONS)
-    x, y, z = map(float, shift)
-    return u + q * z - r * y, v + r * x - p * z, w + p * y - q * x
-
-
-def _root(notes: list[str], value: Any) -> Any:
-    """A square root: of a number, or the speed."""
-    products = as_products(value)
-    number = products.number
-    if number is not None:
-        if number < 0.0:
-            raise ArithmeticProblem("the root of a negative number")
-        return math.sqrt(number)
-    squares = {}
-    for product, factor in products.terms.items():
-        if product == () and abs(factor) <= FLOOR:
-            continue
-        name, power = product[0] if len(product) == 1 else ("", 0)
-        if power != 2 or abs(factor - 1.0) > 1e-12:
-            raise ArithmeticProblem("a root that is not that of u^2 + v^2 + w^2")
-        squares[name.replace(MARK, "")] = factor
-    if not squares or not set(squares) <= set(LINEAR):
-        raise ArithmeticProblem("a root that is not that of u^2 + v^2 + w^2")
-    if len(squares) < 3:
-        notes.append(
-            f"U of the file is the root of {' + '.join(f'{n}^2' for n in squares)}; here it is that of all three"
-        )
-    return Products.of("U")
-
-
-def _of_number(function: str, value: Any) -> float:
-    number = as_products(value).number
-    if number is None:
-        raise ArithmeticProblem(f"{function} of a velocity")
-    return float(getattr(math, function)(number))
-
 
 summary = "xdyn YAML: one body with added mass, damping matrices and manoeuvring expressions"
 citations = ("sname1950", "fossen2011", "xdyn")
@@ -354,7 +72,7 @@ def read(path: Path, density: float | None = None) -> ParameterFile:  # noqa: AR
         law = multiplied_out(body)
         stated = _stated(body, law, path)
     except ArithmeticProblem as why:
-        raise InputError(str(why), "sums of products of velocities, as xdyn reads them", file=path) from None
+        raise input_error("formats.no_sums_of_products", path, why=str(why)) from None
     return imported_file(stated, [InputFile(path.name, sha256_of(path))], citations)
 
 

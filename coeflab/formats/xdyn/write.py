@@ -12,8 +12,8 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from coeflab.core.errors import InputError
 from coeflab.core.text.yaml import parse_yaml
+from coeflab.core.texts import input_error
 from coeflab.core.types import Array, remembered
 from coeflab.core.units import STANDARD_GRAVITY
 from coeflab.core.wording import identifier, listed, one_line
@@ -75,10 +75,7 @@ def _weighed(parameters: ParameterFile) -> MassProperties:
     if mass is None or mass.centre is None or mass.inertia_matrix is None:
         keys = ("mass", "mass.centre", "mass.inertia_matrix")
         lacking = keys if mass is None else [k for k in keys[1:] if getattr(mass, k.removeprefix("mass.")) is None]
-        raise InputError(
-            f"no {listed(lacking)}", "the rigid-body inertia, without which xdyn does not run", column=lacking[0],
-            advice="State mass, centre_of_gravity and inertia_matrix in body.toml, or `coeflab params new --mass --cg --inertia`.",
-        )  # fmt: skip
+        raise input_error("formats.no_rigid_body", column=lacking[0], lacking=listed(lacking))
     return mass
 
 
@@ -139,7 +136,7 @@ def render(parameters: ParameterFile) -> Mapping[str, bytes]:
     water = water_inertia(parameters)
     added = moved(water.matrix, -offset)
     if definiteness(rigid + added).smallest <= 0.0:
-        raise InputError("an inertia that is not positive definite with its added mass", "positive masses and inertias")
+        raise input_error("formats.inertia_not_positive")
     terms, speed = written_terms(parameters), parameters.conditions.speed
     place = np.array(parameters.reference_point.point) - offset
     dynamics = [

@@ -8,10 +8,11 @@ import re
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from importlib.resources import files
+from string import ascii_lowercase
 from typing import Any, Literal
 
 from coeflab.core.errors import OutputError
-from coeflab.core.table import Table, percent, plus_minus, says_one
+from coeflab.core.table import ABSENT, Table, percent, plus_minus, says_one
 from coeflab.core.text.bounded import own_bytes
 from coeflab.core.version import VERSION
 from coeflab.report.document import Answer, AnswerRow, Document, Figure, Section
@@ -27,7 +28,7 @@ TEMPLATE = ("data", "symbols", "page", "figures", "tables", "first_page", "repor
 LONGEST_TITLE, LONGEST_HEAD, LONGEST_COLUMN, LONGEST_CAPTION = 300, 64, 160, 800
 WHOLE, WORDY = 20, re.compile(r"[a-df-z,]")
 LONG, DEEP = 18, 3
-NO_DATA = "no data"
+NO_DATA, ESTIMATOR = "no data", "estimator"
 FEW, ON_A_PAGE, CHAPTER = 14, 3000, 4
 FINER = 4
 FILE = re.compile(r"/?(?:[\w-]+[./])+[A-Za-z]\w{0,7}[,;:.]?")
@@ -208,7 +209,7 @@ def _table(table: Table, level: int) -> dict[str, Any]:
     title = _text(shortened(table.title, LONGEST_TITLE))
     if level >= DEEP and len(table.rows) > LONG:
         return {"elsewhere": True, "title": title, "count": len(table.rows)}
-    table = _with_room(table)
+    table = _with_room(_lettered(table))
     columns = range(len(table.headers))
     units = {i for i in columns if table.headers[i] == "unit"}
     folds = [any(len(row[i]) > WHOLE and WORDY.search(row[i]) for row in table.rows) for i in columns]
@@ -227,6 +228,23 @@ def _table(table: Table, level: int) -> dict[str, Any]:
         "verdicts": [[text in ("fail", "warn") for text in row] for row in table.rows],
         "notes": [_text(n) for n in table.notes],
     }
+
+
+def _lettered(table: Table) -> Table:
+    """With letters in the place of estimators that rows share, explained below; without the column where one serves all."""
+    if ESTIMATOR not in table.headers:
+        return table
+    i = table.headers.index(ESTIMATOR)
+    texts = [text for text in dict.fromkeys(row[i] for row in table.rows) if text != ABSENT]
+    if not 0 < len(texts) < min(len(table.rows), len(ascii_lowercase)):
+        return table
+    names = dict(zip(texts, ascii_lowercase, strict=False))
+    several = len(texts) > 1
+    lettered = replace(
+        table, rows=tuple((*row[:i], names.get(row[i], row[i]), *row[i + 1 :]) for row in table.rows),
+        notes=(*table.notes, *(f"{ESTIMATOR} {names[t] if several else 'of all'}: {t}." for t in texts)),
+    )  # fmt: skip
+    return lettered if several else lettered.only([k for k in range(len(table.headers)) if k != i])
 
 
 def _with_room(table: Table) -> Table:

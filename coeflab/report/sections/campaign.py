@@ -8,7 +8,7 @@ The figure of one budget: parts as bars, the largest on top.
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -88,7 +88,7 @@ def campaign_section(study: Study, fit: FitResult, place: str, taken: set[str]) 
     if sum(f.campaign == fit.campaign for f in study.fits) > 1:
         title = f"{title} ({fit.fit})"
     again = _first_of(study, fit) is not fit
-    text = [AS_BEFORE] if again else [line for t in mine for line in _about(t)]
+    text = [AS_BEFORE] if again else [*(line for t in mine for line in _about(t)), *_obtained(mine)]
     zero = zeros(study, fit.campaign, fit.coefficients.coefficients)
     alone = [s for s in fit.sweeps if s.symbol not in {c.symbol for c in zero} and not s.by_symmetry]
     own = next((t for t in study.plan.tows if t.campaign == fit.campaign), None)
@@ -165,13 +165,16 @@ def _about(table: ForceTable) -> list[str]:
         f"{table.run_at.capitalize()}. "
         f"Source: {work(source.citation)}" + (f" {source.place}." if source.place else "")
     ]
-    if source.how_obtained:
-        text.append(source.how_obtained)
-    if source.stated_uncertainty:
-        text.append(f"Uncertainty as the source states it: {source.stated_uncertainty}.")
     if table.notes:
         text.append(f"Done on reading: {'; '.join(table.notes)}.")
     return text
+
+
+def _obtained(several: Sequence[ForceTable]) -> Iterator[str]:
+    """How tables were obtained and what their sources state of their uncertainty, once where they share it."""
+    yield from dict.fromkeys(t.source.how_obtained for t in several if t.source.how_obtained)
+    for stated in dict.fromkeys(t.source.stated_uncertainty for t in several if t.source.stated_uncertainty):
+        yield f"Uncertainty as the source states it: {stated}."
 
 
 def _sweep_section(study: Study, fit: FitResult, sweep: Sweep, place: str) -> Section:

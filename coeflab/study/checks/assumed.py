@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from coeflab.core.finding import Fact
 from coeflab.core.table import as_check
-from coeflab.tables.assumptions import CODE
+from coeflab.tables.assumptions import CODE, INERTIA
 
 if TYPE_CHECKING:
     from coeflab.core.finding import Finding
@@ -22,7 +22,7 @@ citations = ("sname1950",)
 def check(study: Study) -> Sequence[Check]:
     """One finding per accepted key of a table, with the coefficients of all fits that hang on it."""
     together: dict[tuple[object, ...], Finding] = {}
-    for f in dict.fromkeys(f for fit in study.fits for f in fit.findings if f.code == CODE):
+    for f in dict.fromkeys(f for fit in study.fits for f in fit.findings if f.code in (CODE, INERTIA)):
         facts = {fact.name: fact.value for fact in f.facts}
         key = (f.subject, *((name, value) for name, value in facts.items() if name != "symbols"))
         known = together.get(key)

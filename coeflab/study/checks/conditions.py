@@ -1,24 +1,20 @@
-"""Whether densities are those of water, the Reynolds number that of speed, length and viscosity, and inertia is taken out."""
+"""Whether densities are those of water, and the Reynolds number is that of speed, length and viscosity."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 from coeflab.core.finding import Severity
 from coeflab.core.table import Check
 from coeflab.core.units import GRAMS
 from coeflab.law.scaling import FASTEST, LENGTHS, beyond_ends, doubtful_size, speaks_of_air
-from coeflab.law.symbols import ANGULAR
-from coeflab.tables.to_frd import TAKEN_OUT
 
 if TYPE_CHECKING:
     from coeflab.study.study import Study
     from coeflab.tables.force_table import ForceTable
 
-summary = "density, Reynolds number of speed, length and viscosity, reference point, inertia of a model that turns"
+summary = "density, Reynolds number of speed, length and viscosity, reference point"
 citations = ("ittc_water",)
 
 WATER = (985.0, 1040.0)  # kg/m^3: fresh at 55 deg C to the Red Sea
@@ -30,7 +26,6 @@ def check(study: Study) -> Sequence[Check]:
     """Findings on every campaign that was run in water or states viscosity and Reynolds number."""
     found = [c for t in {t.campaign: t for t in study.tables}.values() for c in _found(t)]
     rows = [(t.name, t.density) for t in study.tables if t.density is not None]
-    found += [c for t in study.tables for c in _carried(t)]
     return found + [c for name, by_row in rows for c in _water(name, float(by_row.min()), float(by_row.max()))]
 
 
@@ -65,13 +60,6 @@ def _sizes(t: ForceTable) -> Iterator[Check]:
                 advice=f"{advice[:1].upper()}{advice[1:]} in campaign.toml.", least=WATER[0], most=WATER[1],
                 shortest=LENGTHS[0], longest=LENGTHS[1],
             )  # fmt: skip
-
-
-def _carried(t: ForceTable) -> Iterator[Check]:
-    """A balance that turns with its model and is declared not to carry it: to be known, not to be warned of again."""
-    turns = any(np.any(np.asarray(t.motion[m]) != 0.0) for m in ANGULAR)
-    if turns and t.source.kind == "experiment" and not any(n.startswith(TAKEN_OUT) for n in t.notes):
-        yield Check.of("conditions.inertia", f"{t.name} inertia", Severity.NOTE)
 
 
 def _found(t: ForceTable) -> Iterator[Check]:

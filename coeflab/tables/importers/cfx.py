@@ -12,12 +12,12 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from coeflab.core.errors import InputError
 from coeflab.core.options import NoOptions, parse_options
+from coeflab.core.texts import input_error
 from coeflab.tables.half_bodies import planes_beside
 from coeflab.tables.monitor_files import decoded, files_of, first_filled, head, kind_of, lines_of, require
 from coeflab.tables.monitors import how_ended, in_order, laid_out, raw_table, read_monitor
-from coeflab.tables.raw_table import Ended, RawTable, Run
+from coeflab.tables.raw_table import Run
 
 summary = "monitor data of Ansys CFX by cfx5mondata (CSV)"
 computed = True
@@ -70,13 +70,11 @@ def run(path: Path, options: Mapping[str, Any] | None = None) -> Run:
     if path.is_dir():
         found = files_of(path, "cfx")
         if len(found) != 1:
-            raise InputError(
-                f"{len(found)} monitor files", "the monitors of one run", file=path, advice="Name one file."
-            )
+            raise input_error("tables.several_monitor_files", path, count=len(found))
         file = found[0]
     raw = head(file)
     if not raw.strip() and file.is_file():
-        return Run(path, path.stem, RawTable(path, (), files=(file,)), ended=Ended.EMPTY, why=f"{file.name}: empty")
+        return Run.empty(path, f"{file.name}: empty", [file])
     require(raw, file, "cfx", 'a file of cfx5mondata ("ACCUMULATED TIMESTEP", ...)')
     lines = lines_of(decoded(raw)[0])
     ((at, first),) = first_filled(lines, 1)

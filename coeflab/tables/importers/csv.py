@@ -6,21 +6,20 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
 from coeflab.core.errors import InputError, UnitsError, shown
-from coeflab.core.limits import LARGEST_NUMBER
 from coeflab.core.options import NoOptions, parse_options
-from coeflab.core.text.delimited import Cells, read_cells, require_unit
+from coeflab.core.text.delimited import Cells, read_cells
+from coeflab.core.texts import input_error
 from coeflab.core.types import Array
-from coeflab.core.units import Header, factor
+from coeflab.core.units import Header
 from coeflab.core.wording import Verbatim
 from coeflab.law.symbols import CONTROL_COLUMNS, MOTIONS
 from coeflab.tables.campaign import Campaign, TableDeclaration
 from coeflab.tables.column_map import EXAMPLES, FORCES, ROLES, ColumnMap
+from coeflab.tables.columns import Columns
 from coeflab.tables.dialect import is_house_table
 from coeflab.tables.force_table import ForceTable
-from coeflab.tables.to_frd import Columns, force_table, speed_of_rows
+from coeflab.tables.to_frd import force_table, speed_of_rows
 from coeflab.tables.vocabulary import did_you_mean, one_name
 
 summary = "CSV with units in the headers (beta [deg], Y [N], Y' [-]) and a campaign.toml"
@@ -40,39 +39,16 @@ def _kind(name: str) -> ColumnMap | None:
     return ColumnMap(plain, primed=primed) if plain in (MOTIONS if primed else OWN) else None
 
 
-def _factor(header: Header, kind: ColumnMap, cells: Cells) -> float:
-    """SI factor of a column, errors placed at its header."""
-    line = cells.first_line - 1
-    unit = require_unit(
-        header,
-        cells.file,
-        line,
-        f"{header.name} [{'-' if kind.primed else 'rps' if kind.name == 'rps' else EXAMPLES[kind.dimension]}]",
-    )
-    try:
-        return factor(unit, "none" if kind.primed else kind.dimension)
-    except UnitsError as why:
-        advice = why.advice
-        if kind.primed:
-            advice = f"A primed column has the unit [-]; for a dimensional one write {header.name[:-1]} [...]."
-        elif unit == "-" and kind.dimension != "angle":
-            advice = f"For the nondimensional (prime) form write {header.name}' [-]."
-        raise UnitsError(
-            why.found, why.expected, file=cells.file, line=line, column=header.text, advice=advice
-        ) from None
-
-
 def _values(cells: Cells, header: Header, kind: ColumnMap) -> Array:
-    with np.errstate(over="ignore"):
-        values = cells.numbers(header.name) * _factor(header, kind, cells)
-    wild = np.abs(values) > LARGEST_NUMBER
-    if np.any(wild):
-        row = int(np.flatnonzero(wild)[0])
-        raise InputError(
-            shown(cells.texts(header.name)[row]), f"a number of at most {LARGEST_NUMBER:g} in SI units", file=cells.file,
-            line=cells.line(row), column=header.text,
-        )  # fmt: skip
-    return values
+    unit = "-" if kind.primed else "rps" if kind.name == "rps" else EXAMPLES[kind.dimension]
+    try:
+        return cells.si(header, "none" if kind.primed else kind.dimension, f"{header.name} [{unit}]")
+    except UnitsError as why:
+        if kind.primed and header.unit is not None:
+            why.advice = f"A primed column has the unit [-]; for a dimensional one write {header.name[:-1]} [...]."
+        elif header.unit == "-" and kind.dimension != "angle":
+            why.advice = f"For the nondimensional (prime) form write {header.name}' [-]."
+        raise
 
 
 def _unknown(cells: Cells, header: Header) -> InputError:
@@ -106,9 +82,8 @@ def _columns(cells: Cells, campaign: Campaign, table: TableDeclaration) -> Colum
         if kind is None:
             raise _unknown(cells, header)
         if (name := kind.plain) in headers:
-            raise InputError(
-                f"{headers[name]} and {header.text}", "one of them", file=cells.file, line=cells.first_line - 1,
-                column=header.text,
+            raise input_error(
+                "tables.column_twice", cells.file, cells.first_line - 1, header.text, headers=headers[name], text=header.text,
             )  # fmt: skip
         headers[name] = header.text
         values = _values(cells, header, kind)
@@ -153,10 +128,9 @@ def _doubtful(cells: Cells, texts: list[str], headers: dict[str, str]) -> tuple[
         for token in text.replace(";", " ").split():
             name = one_name(token.removesuffix("'"))
             if name not in headers or name.startswith("se_"):
-                raise InputError(
-                    shown(token), "names of columns, separated by blanks", file=cells.file, line=cells.line(row),
-                    column=UNCERTAIN,
-                )  # fmt: skip
+                raise input_error(
+                    "tables.no_column_to_doubt", cells.file, cells.line(row), UNCERTAIN, token=shown(token)
+                )
             names.add(name)
         out.append(frozenset(names))
     return tuple(out)
@@ -190,12 +164,5 @@ def read(
         Names file, line and column, what was found and what was expected.
     """
     parse_options(NoOptions, options or {}, "csv")
-    wanted = [t for t in campaign.tables if only is None or Path(t.file).name == only]
-    if not wanted:
-        known = ", ".join(t.file for t in campaign.tables)
-        raise InputError(f"no [[table]] for {shown(only)}", f"one of {known}", file=campaign.path, column="table")
-    tables = []
-    for table in wanted:
-        cells = read_cells(campaign.path.parent / table.file)
-        tables.append(force_table(_columns(cells, campaign, table), campaign, table))
-    return tuple(tables)
+    found = ((table, read_cells(campaign.path.parent / table.file)) for table in campaign.wanted(only))
+    return tuple(force_table(_columns(cells, campaign, table), campaign, table) for table, cells in found)

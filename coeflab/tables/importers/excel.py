@@ -5,30 +5,28 @@ from __future__ import annotations
 import datetime
 import math
 import re
-import struct
 import zipfile
-import zlib
-from collections.abc import Iterator, Mapping, Sequence, Set
+from collections.abc import Mapping, Sequence, Set
 from dataclasses import dataclass
 from io import BytesIO
-from lzma import LZMAError
 from pathlib import Path
 from statistics import median
 from typing import Any
-from xml.parsers import expat
 
 import numpy as np
 
-from coeflab.core.errors import InputError, shown
-from coeflab.core.limits import SHEET_BYTES, SHEET_CELLS, SHEET_UNPACKED, TABLE_COLUMNS
+from coeflab.core.errors import shown
+from coeflab.core.limits import SHEET_BYTES, SHEET_CELLS, TABLE_COLUMNS
 from coeflab.core.options import bounded, parse_options, text
-from coeflab.core.text.bounded import part_of, stream_of, whole_bytes
+from coeflab.core.text.bounded import stream_of, whole_bytes
+from coeflab.core.texts import input_error
 from coeflab.core.types import Array
 from coeflab.core.wording import listed
 from coeflab.tables.blocks import Title, with_blocks
 from coeflab.tables.dialect import Cells, Head, Marks, Row, is_unit_row, numbered, numeric, raw_columns, read_head
 from coeflab.tables.raw_table import RawTable, SeveralError
 from coeflab.tables.words.above import words_above
+from coeflab.tables.workbook_size import errors_in
 
 summary = "spreadsheets (xlsx, xls, ods): a sheet with its header row, formulas by their saved values"
 citations = ()
@@ -36,21 +34,11 @@ reads = "sheets of xlsx, xls and ods files"
 
 ZIP, OLE = b"PK\x03\x04", b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1"
 _BOOK, _LOCKED = "Workbook".encode("utf-16-le"), "EncryptedPackage".encode("utf-16-le")
-_PLACE = re.compile(rb"""<(?:\w+:)?(?:c|row)\s(?:[^>]*?\s)?r\s*=\s*["']([^"'>]*)["']""")
-_PLACED = re.compile(rb"([A-Z]{0,3})([0-9]{1,7})")
-_ERROR = re.compile(rb"""<c\b(?=[^>]*\st\s*=\s*["']e["'])[^>]*\sr\s*=\s*["']([A-Z]+[0-9]+)["']""")
-_ODS = re.compile(rb"<table:(?:table-row|table-cell|covered-table-cell|table)\b[^>]*>")
-_REPEATED = re.compile(rb"""table:number-(?:rows|columns)-repeated\s*=\s*["']([0-9]+)["']""")
-_CHUNK = 1 << 20
 Value = Any  # what calamine hands out: str, float, int, bool, date, time, datetime, timedelta
 PLAIN, COMMA = Marks(), Marks(",")
 _COMMA = re.compile(
     r"[-+\u2212]?(?:0,[0-9]+|[0-9]+,(?:[0-9]{1,2}|[0-9]{4,})(?:[eE][-+]?[0-9]+)?)"
 )  # no mark of thousands
-_BROKEN = (
-    LookupError,
-    expat.ExpatError, zipfile.BadZipFile, zlib.error, LZMAError, EOFError, ValueError, NotImplementedError, RuntimeError, struct.error, IndexError,
-)  # fmt: skip
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,10 +58,6 @@ class Options:
     sheet: str = text("")
     header: int = bounded(0, -1, 1_048_576)
     units: int = bounded(0, -1, 1_048_576)
-
-
-def _refused(found: str, file: Path, expected: str = "a spreadsheet", advice: str = "") -> InputError:
-    return InputError(found, expected, file=file, advice=advice)
 
 
 def _kind(path: Path) -> str:
@@ -105,208 +89,12 @@ def recognises(path: Path) -> bool:
     return bool(_kind(path))
 
 
-def _column(letters: bytes) -> int:
-    number = 0
-    for letter in letters:
-        number = 26 * number + letter - 64
-    return number
-
-
-def _pieces(packed: zipfile.ZipFile, name: str) -> Iterator[bytes]:
-    """A part of a workbook, piece by piece, each with the end of the one before, cut at the last tag."""
-    rest = b""
-    with part_of(packed, name) as stream:
-        while piece := stream.read(_CHUNK):
-            whole = rest + piece
-            end = whole.rfind(b"<") if len(whole) < 4 * _CHUNK else -1
-            yield whole[: max(end, 0)]
-            rest = whole[max(end, 0) :]
-    yield rest
-
-
-def _scan_of_xlsx(packed: zipfile.ZipFile, name: str) -> tuple[int, list[str]]:
-    """Cells of the rectangle from A1 to the last one, which the reader holds in memory; cells that it hands out as blank."""
-    rows = columns = 0
-    blank: list[str] = []
-    for piece in _pieces(packed, name):
-        for place in _PLACE.findall(piece):
-            if not (m := _PLACED.fullmatch(place)):
-                raise ValueError(f"a cell at {shown(place.decode('utf-8', 'replace'), 20)}")
-            rows, columns = max(rows, int(m[2])), max(columns, _column(m[1]))
-        if len(blank) < 1000:
-            blank += [m[1].decode("ascii", "replace") for m in _ERROR.finditer(piece)]
-    return rows * max(columns, 1), blank
-
-
-def _cells_of_ods(packed: zipfile.ZipFile) -> int:
-    """Cells of the rectangles of all sheets, repeated ones counted as often."""
-    total = rows = width = repeat = column = 0
-    for piece in _pieces(packed, "content.xml"):
-        for tag in _ODS.findall(piece):
-            many = _REPEATED.search(tag)
-            times = int(many[1][:12]) if many else 1
-            if tag.startswith(b"<table:table-row"):
-                repeat, column = times, 0
-                rows += times if times < 1000 else 0  # the empty rest of a sheet is written as one row
-            elif b"table-cell" in tag[:26]:
-                column += times
-                if b"office:" in tag or b"table:formula" in tag:
-                    width = max(width, column)
-                    rows += repeat if repeat >= 1000 else 0
-            else:
-                total, rows, width = total + rows * width, 0, 0
-    return total + rows * width
-
-
-def _checked(path: Path, kind: str) -> list[str]:
-    """Refuse a workbook that unpacks to more than memory holds, whatever its directory says; remarks on errors in cells."""
-    found, cells, blank = "", 0, list[str]()
-    try:
-        if kind == "xls":
-            cells = _cells_of_xls(whole_bytes(path, SHEET_BYTES))
-        else:
-            with zipfile.ZipFile(path) as packed:
-                found = _too_much(packed, packed.infolist())
-                if not found:
-                    _require_whole_xml(packed)
-                if not found and kind == "ods":
-                    cells = _cells_of_ods(packed)
-                elif not found:
-                    for part in packed.namelist():
-                        many, errors = _scan_of_xlsx(packed, part)
-                        cells += many
-                        blank += [f"{place} of {part.rpartition('/')[2]}" for place in errors]
-    except (*_BROKEN, OSError) as why:
-        raise _refused(f"a broken workbook ({shown(why, 200)[1:-1]})", path) from None
-    if cells > SHEET_CELLS:
-        found = f"{cells:,} cells between the first and the last"
-    if found:
-        raise _refused(found, path, f"at most {SHEET_UNPACKED:,} bytes unpacked and {SHEET_CELLS:,} cells")
-
-    many = len(blank)
-    return (
-        [f"{many} cell{'s' * (many > 1)} with an error such as #DIV/0!, first {blank[0]}; read as blank"]
-        if blank
-        else []
-    )
-
-
-_END, _FREE = 0xFFFFFFFE, 0xFFFFFFFA  # end of a chain of sectors; from here on no sector
-_CELLS = frozenset({0x0006, 0x00BD, 0x00BE, 0x00FD, 0x0201, 0x0203, 0x0204, 0x0205, 0x027E})
-_SHEET_BEGINS, _EXTENT, _MANY = 0x0809, 0x0200, frozenset({0x00BD, 0x00BE})
-
-
-def _chain(first: int, table: Sequence[int]) -> list[int]:
-    """Numbers of the sectors from the first on; [MS-CFB] 2.3.
-
-    Raises
-    ------
-    ValueError
-        The chain bites its tail or leaves the table: the reader would follow it until memory ends.
-    """
-    out: list[int] = []
-    while first != _END:
-        if first >= len(table) or len(out) >= len(table):
-            raise ValueError("a chain of sectors without end")
-        out.append(first)
-        first = table[first]
-    return out
-
-
-def _numbers(content: bytes) -> tuple[int, ...]:
-    return struct.unpack(f"<{len(content) // 4}I", content[: len(content) // 4 * 4])
-
-
-def _stream_of_xls(content: bytes) -> bytes:
-    """The workbook inside a compound file; [MS-CFB] 2.2 to 2.6."""
-    power, small_power = struct.unpack_from("<HH", content, 30)
-    if power not in (9, 12) or small_power != 6:
-        raise ValueError("sectors of an unknown size")
-    size = 1 << power
-    sectors = [content[i : i + size] for i in range(size, len(content), size)]
-    places, more = list(_numbers(content[76:512])), struct.unpack_from("<I", content, 68)[0]
-    for _ in sectors:
-        if more >= _FREE:
-            break
-        *found, more = _numbers(sectors[more])
-        places += found
-    if more < _FREE:
-        raise ValueError("a chain of sectors without end")
-    table = [n for place in places if place < _FREE for n in _numbers(sectors[place])]
-
-    def whole(first: int) -> bytes:
-        return b"".join(sectors[n] for n in _chain(first, table))
-
-    start, _, cutoff, small_start, small_many = struct.unpack_from("<5I", content, 48)
-    folder = whole(start)
-    if not folder or len(folder) % 128:
-        raise ValueError("a folder that is cut")
-    entries = [folder[i : i + 128] for i in range(0, len(folder) - 127, 128)]
-    small = whole(struct.unpack_from("<I", entries[0], 116)[0])
-    small_table = _numbers(whole(small_start)) if small_many else ()
-    for entry in entries:
-        first, length = struct.unpack_from("<II", entry, 116)
-        name = entry[: min(struct.unpack_from("<H", entry, 64)[0], 64)].decode("utf-16-le", "replace").rstrip("\0")
-        if length == 0 or entry[66] != 2:
-            continue
-        pieces = (
-            (small[64 * n : 64 * n + 64] for n in _chain(first, small_table)) if length < cutoff else (whole(first),)
-        )
-        stream = b"".join(pieces)[:length]
-        if name.lower() in ("workbook", "book"):
-            return stream
-    raise ValueError("no workbook in it")
-
-
-def _cells_of_xls(content: bytes) -> int:
-    """Cells of the rectangles of all sheets; [MS-XLS] 2.4."""
-    stream = _stream_of_xls(content)
-    at = total = rows = columns = 0
-    while at + 4 <= len(stream):
-        kind, length = struct.unpack_from("<HH", stream, at)
-        body = stream[at + 4 : at + 4 + length]
-        if kind == _SHEET_BEGINS:
-            total, rows, columns = total + rows * columns, 0, 0
-        elif kind == _EXTENT and len(body) in (10, 14):
-            top, bottom, left, right = struct.unpack_from("<IIHH" if len(body) == 14 else "<HHHH", body)
-            if top > bottom or left > right:
-                raise ValueError("a sheet that ends before it begins")
-            rows, columns = max(rows, bottom), max(columns, right)
-        elif kind in _CELLS and len(body) >= 6:
-            row, column = struct.unpack_from("<HH", body)
-            last = struct.unpack_from("<H", body, len(body) - 2)[0] if kind in _MANY else column
-            rows, columns = max(rows, row + 1), max(columns, column + 1, last + 1)
-        at += 4 + length
-    return total + rows * columns
-
-
-def _require_whole_xml(packed: zipfile.ZipFile) -> None:
-    """Refuse parts that are no whole XML: in an ods that is cut the reader looks for the end for ever."""
-    for name in packed.namelist():
-        if name.endswith((".xml", ".rels")):
-            with part_of(packed, name) as stream:
-                expat.ParserCreate().ParseFile(stream)
-
-
-def _too_much(packed: zipfile.ZipFile, parts: list[zipfile.ZipInfo]) -> str:
-    """Why a workbook unpacks to too much, by its directory and by itself; empty where it does not."""
-    left = SHEET_UNPACKED
-    if (words := sum(part.file_size for part in parts)) > left:
-        return f"{words:,} bytes when unpacked"
-    for part in parts:
-        with part_of(packed, part) as stream:
-            while piece := stream.read(_CHUNK):
-                left -= len(piece)
-                if left < 0:
-                    return f"more bytes in {shown(part.filename)} than the directory says"
-    return ""
-
-
 def _cells_of(sheet: Any, name: str, path: Path) -> list[list[Value]]:
     high, wide = sheet.total_height, sheet.total_width
     if high * wide > SHEET_CELLS or wide > TABLE_COLUMNS:
-        found = f"{high:,} rows of {wide:,} cells in sheet {shown(name)}"
-        raise _refused(found, path, f"at most {SHEET_CELLS:,} cells and {TABLE_COLUMNS} columns")
+        raise input_error(
+            "tables.size_of_sheet", path, high=high, wide=wide, name=shown(name), most_cells=SHEET_CELLS, most_columns=TABLE_COLUMNS
+        )  # fmt: skip
     return list(sheet.to_python(skip_empty_area=False))
 
 
@@ -334,13 +122,13 @@ def _sheets(path: Path, only: str = "") -> dict[str, list[list[Value]]]:
                     continue  # a chart or a macro sheet
                 out[name] = _cells_of(sheet, name, path)
     except python_calamine.PasswordError:
-        raise _refused("a locked workbook", path, advice="Save it without a password.") from None
+        raise input_error("tables.workbook_with_password", path) from None
     except (python_calamine.CalamineError, OSError, ValueError) as why:
-        raise _refused(f"a broken workbook ({shown(why, 200)[1:-1]})", path) from None
+        raise input_error("tables.broken_workbook", path, why=shown(why, 200)[1:-1]) from None
     except BaseException as why:  # a panic of the reader in Rust is no Exception
         if type(why).__name__ != "PanicException":
             raise
-        raise _refused(f"a broken workbook ({shown(why, 200)[1:-1]})", path) from None
+        raise input_error("tables.broken_workbook", path, why=shown(why, 200)[1:-1]) from None
     return out
 
 
@@ -399,7 +187,7 @@ def _chosen(sheets: Mapping[str, list[list[Value]]], options: Options, path: Pat
             return options.sheet
         if options.sheet.isdecimal() and 0 < int(options.sheet[:9]) <= len(sheets):
             return list(sheets)[int(options.sheet) - 1]
-        raise InputError(f"no sheet {shown(options.sheet)}", f"one of {known}", file=path)
+        raise input_error("tables.no_such_sheet", path, name=shown(options.sheet), known=known)
     full = [name for name, rows in sheets.items() if sum(_filled(row) > 0 for row in rows) > 1]
     if len(full) != 1:
         several = SeveralError(
@@ -417,7 +205,7 @@ def _body(rows: list[list[Value]], options: Options, path: Path) -> tuple[int, H
     counts = [_filled(row) if i >= after else 0 for i, row in enumerate(rows)]
     many = [n for n in counts if n]
     if not many:
-        raise InputError("no rows of numbers", "a table", file=path)
+        raise input_error("tables.no_rows_in_sheets", path)
     usual = median(many) / 2
     following = [i for i, n in enumerate(counts) if n]
     fits = [i for i, n in enumerate(counts) if n >= usual]
@@ -446,9 +234,7 @@ def _head_over(rows: list[list[Value]], begin: int, numbers: Set[int], options: 
             above.insert(0, (i + 1, cells))
     for wanted in (options.header, options.units):
         if wanted > 0 and wanted not in [n for n, _ in above]:
-            raise InputError(
-                f"nothing in row {wanted}", f"names over the data, which begin in row {begin + 1}", file=path
-            )
+            raise input_error("tables.no_names_in_row", path, wanted=wanted, begin=begin + 1)
     return read_head(above, len(rows[0]), PLAIN, numbers, options.header, options.units)
 
 
@@ -481,10 +267,9 @@ def _kept(
             remarks.append(f"row {i + 1}: words; the table of row {head.line} ends there")
             break
         else:
-            raise InputError(
-                f"words among the rows ({shown(' '.join(t for t in map(_text, row) if t))})", "rows of numbers under one header",
-                file=path, line=i + 1, advice="Say the row of the table's header by the option header.",
-            )  # fmt: skip
+            raise input_error(
+                "tables.words_among_rows_of_sheet", path, i + 1, place=shown(" ".join(t for t in map(_text, row) if t))
+            )
     return selected, remarks, titles
 
 
@@ -493,10 +278,7 @@ def _values(column: list[Value], lines: list[int], k: int, met: Cells, path: Pat
     dates = [i for i, v in enumerate(column) if _is_date(v)]
     if dates and any(_is_number(v) for v in column):
         i = dates[0]
-        raise InputError(
-            f"the date {column[i]} in cell {_place(lines[i], k)}", "a number, as in other rows", file=path, line=lines[i],
-            advice="Spreadsheets make dates of numbers such as 1.5; format the column as numbers and write it again.",
-        )  # fmt: skip
+        raise input_error("tables.date_among_numbers", path, lines[i], head=column[i], place=_place(lines[i], k))
     out = np.empty(len(column))
     for i, value in enumerate(column):
         if _is_number(value) and math.isfinite(value):
@@ -524,16 +306,11 @@ def raw(path: Path, options: Mapping[str, Any]) -> RawTable:
     given = parse_options(Options, options, "excel")
     kind = _kind(path)
     if kind in ("", "locked", "xlsb"):
-        found = {"": "no workbook", "locked": "a locked workbook", "xlsb": "a binary workbook (xlsb)"}[kind]
-        raise _refused(
-            found,
-            path,
-            "an xlsx, xls or ods file",
-            {"locked": "Save it without a password.", "xlsb": "Save it as xlsx."}.get(kind, ""),
-        )
+        code = {"": "tables.no_workbook", "locked": "tables.locked_workbook", "xlsb": "tables.binary_workbook"}[kind]
+        raise input_error(code, path)
     if path.stat().st_size > SHEET_BYTES:
-        raise _refused(f"{path.stat().st_size:,} bytes", path, f"at most {SHEET_BYTES:,}", "Save the table as CSV.")
-    errors = _checked(path, kind)
+        raise input_error("tables.bytes_of_workbook", path, size=path.stat().st_size, most_bytes=SHEET_BYTES)
+    errors = errors_in(path, kind)
     read = {name: _read_texts(rows) for name, rows in _sheets(path, given.sheet).items()}
     sheets = {name: rows for name, (rows, _) in read.items()}
     name = _chosen(sheets, given, path)

@@ -20,9 +20,20 @@ from coeflab.core.errors import InputError, shown
 from coeflab.core.limits import JSON_BYTES
 from coeflab.core.options import NoOptions, parse_options
 from coeflab.core.text.bounded import stream_of
+from coeflab.core.texts import input_error
 from coeflab.tables.half_bodies import planes_beside
 from coeflab.tables.monitor_files import decoded, files_of, first_filled, head, kind_of, lines_of, one_run, require
-from coeflab.tables.monitors import Monitor, how_ended, in_order, joined, laid_out, pieced, raw_table, read_monitor
+from coeflab.tables.monitors import (
+    Monitor,
+    how_ended,
+    in_order,
+    joined,
+    laid_out,
+    pieced,
+    raw_table,
+    read_monitor,
+    worst_end,
+)
 from coeflab.tables.raw_table import Ended, RawColumn, RawTable, Run, Stated
 
 summary = "report files (.out) and force reports of Ansys Fluent"
@@ -91,12 +102,12 @@ def run(path: Path, options: Mapping[str, Any] | None = None) -> Run:
     if path.is_dir():
         parts = _monitors(path)
         if not parts:
-            raise InputError("no report files of one run", "a folder of one run, or one file", file=path)
+            raise input_error("tables.no_report_files_of_one_run", path)
     else:
         parts = ((path,),)
         raw = head(path)
         if not raw.strip() and path.is_file():
-            return Run(path, path.stem, RawTable(path, (), files=(path,)), ended=Ended.EMPTY, why=f"{path.name}: empty")
+            return Run.empty(path, f"{path.name}: empty")
         require(raw, path, "fluent", "a report file or a force report of Fluent")
         if _is_report(raw):
             return _force_report(path)
@@ -107,7 +118,7 @@ def run(path: Path, options: Mapping[str, Any] | None = None) -> Run:
         ends.append(how_ended(pieces[-1], range(len(pieces[-1].names))[1:]))
         monitors.append(pieced(pieces, 0))
         files += of_one
-    ended, why = max(ends, key=lambda e: (e[0] is not Ended.WHOLE, e[0] is Ended.DIVERGED))
+    ended, why = worst_end(ends)
     whole = joined(monitors, monitors[0].names[0])
     columns = [(j, name, *_meaning(name, j)) for j, name in enumerate(whole.names)]
     dialect = {"format": "Fluent report file", "delimiter": "blanks", "decimal mark": "point"}
@@ -164,7 +175,7 @@ def _read(path: Path) -> Monitor:
     raw = head(path)
     names, at, header = _names(raw)
     if len(names) < 2:
-        raise InputError("one column", "a column that counts and a report", file=path, line=at)
+        raise input_error("tables.one_column", path, at)
     return read_monitor(path, laid_out(raw, path, header, names, " ", at))
 
 
@@ -244,9 +255,9 @@ def _zones(
         if len(rows) != 6 or any(len(r) != size for r in rows):
             if n == len(lines):
                 return zones, False
-            raise InputError(
-                f"{len(rows)} {'vectors' if groups else 'numbers'} for the zone {shown(name)}",
-                f"{'six vectors' if size == 3 else 'six numbers'}: pressure, viscous, total and their coefficients", file=path, line=n,
+            raise input_error(
+                "tables.numbers_of_a_zone", path, n, count=len(rows), found="vectors" if groups else "numbers", name=shown(name),
+                wanted="six vectors" if size == 3 else "six numbers",
             )  # fmt: skip
         zones[name] = tuple(rows)
         if name.lower() == "net":
@@ -258,9 +269,7 @@ def _force_report(path: Path) -> Run:
     """The reports of a file: every kind of table a set of columns, its repetitions the rows."""
     tables, cut = _tables(path)
     if not tables:
-        return Run(
-            path, path.stem, RawTable(path, (), files=(path,)), ended=Ended.EMPTY, why=cut or f"{path.name}: empty"
-        )
+        return Run.empty(path, cut or f"{path.name}: empty")
     kinds: dict[tuple[str, tuple[float, ...] | None], list[_Table]] = {}
     for table in tables:
         kinds.setdefault(table.key, []).append(table)
@@ -271,9 +280,9 @@ def _force_report(path: Path) -> Run:
     ]  # fmt: skip
     centres = {t.centre for found in kinds.values() for t in found[:rows] if t.centre is not None}
     if len(centres) > 1:
-        raise InputError(
-            f"{len(centres)} moment centres", "one moment centre", file=path,
-            line=next(t.line for t in tables if t.centre not in (None, tables[0].centre)),
+        raise input_error(
+            "tables.several_moment_centres", path, next(t.line for t in tables if t.centre not in (None, tables[0].centre)),
+            count=len(centres),
         )  # fmt: skip
     stated, texts = planes_beside(path, _TEXTS, _SYMMETRY)
     if centres:

@@ -13,6 +13,7 @@ from coeflab.core.limits import JSON_BYTES, LARGEST_NUMBER, TABLE_COLUMNS
 from coeflab.core.options import NoOptions, parse_options
 from coeflab.core.text.bounded import whole_bytes
 from coeflab.core.text.json import parse_json
+from coeflab.core.texts import input_error
 from coeflab.tables.dialect import Marks, name_and_unit, names_and_units
 from coeflab.tables.monitor_files import head
 from coeflab.tables.raw_table import RawColumn, RawTable, Stated
@@ -53,7 +54,7 @@ def raw(path: Path, options: Mapping[str, Any]) -> RawTable:
     parse_options(NoOptions, options, "importers.json")
     points, above = _points(_content(path))
     if not points:
-        raise InputError("no list of points", "a list of objects, or an object of lists of one length", file=path)
+        raise input_error("tables.no_points", path)
     names = list(dict.fromkeys(name for point in points for name in point))
     if len(names) > TABLE_COLUMNS:
         raise InputError(f"{len(names)} keys", f"at most {TABLE_COLUMNS}", file=path)

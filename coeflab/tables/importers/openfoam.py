@@ -13,6 +13,7 @@ from typing import Any
 from coeflab.core.errors import InputError, shown
 from coeflab.core.options import measured, one_of, parse_options, words
 from coeflab.core.text.foam import Foam, FoamCase
+from coeflab.core.texts import input_error
 from coeflab.core.wording import listed, repeated
 from coeflab.law.symbols import COMPONENTS
 from coeflab.tables import openfoam_case as of
@@ -88,15 +89,11 @@ def _whole(case: FoamCase, found: Mapping[str, bool], parts: Mapping[str, Foam],
     names = ", ".join(found)
     missing = [n for n in asked if n not in found]
     if missing:
-        raise InputError(
-            f"no forces of the function object {shown(missing[0])}", f"one of {names}", file=case.root,
-            column="function",
-        )  # fmt: skip
+        raise input_error(
+            "tables.no_forces_of_function", case.root, column="function", missing=shown(missing[0]), names=names
+        )
     if twice := repeated(asked):
-        raise InputError(
-            f"{listed(twice)} twice", "every function object once", file=case.root, column="function",
-            advice="Several names are added: twice would be twice its forces. For half of a body: campaign.half_model.",
-        )  # fmt: skip
+        raise input_error("tables.function_twice", case.root, column="function", twice=listed(twice))
     if asked:
         return list(asked)
     if len(found) == 1:
@@ -115,10 +112,9 @@ def _whole(case: FoamCase, found: Mapping[str, bool], parts: Mapping[str, Foam],
             else f"no dictionary says which patches {' and '.join(silent)} has" if silent
             else "none of them covers all patches"
         )  # fmt: skip
-        raise InputError(
-            f"the function objects {names}; {what}", "one that is the whole body", file=case.root, column="function",
-            advice=f"Say which with the option function, such as function={next(iter(found))}; several names are added.",
-        )  # fmt: skip
+        raise input_error(
+            "tables.no_whole_body", case.root, column="function", names=names, what=what, next=next(iter(found))
+        )
     return best
 
 
@@ -158,12 +154,7 @@ def run(path: Path, options: Mapping[str, Any]) -> Run:
     for name, _, kind, file in found_histories(case.root / "postProcessing"):
         found.setdefault(name, []).append((kind, file))
     if not found:
-        raise InputError(
-            NO_FORCES, "postProcessing/NAME/TIME/force.dat, forces.dat, coefficient.dat or forceCoeffs.dat",
-            file=case.root,
-            advice='Add to functions of system/controlDict: forces { type forces; libs ("libforces.so"); '
-            "patches (hull); rho rhoInf; rhoInf 998; CofR (0 0 0); writeControl timeStep; } and run the solver again.",
-        )  # fmt: skip
+        raise input_error("tables.never_run", case.root, no_forces=NO_FORCES)
     parts = of.definitions(case, list(found))
     coefficients = {n: all(k in ("forceCoeffs", "coefficient") for k, _ in files) for n, files in found.items()}
     whole = _whole(case, coefficients, parts, given.function)
@@ -236,10 +227,7 @@ def _scaled(
     if not wanted:
         return ("N", "N m"), density
     if density is None or not density[0]:
-        raise InputError(
-            f"no rhoInf of {main.name}", "the density that forces were multiplied by", file=case.root, column="density",
-            advice="Without it they cannot be turned to another; leave the option out.",
-        )  # fmt: skip
+        raise input_error("tables.no_rho_inf", case.root, column="density", name=main.name)
     for history in all_of_them:
         for name in history.values:
             if name != "time":

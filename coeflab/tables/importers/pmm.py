@@ -16,14 +16,13 @@ from typing import Any
 import numpy as np
 
 from coeflab.core.axes import angle_sign
-from coeflab.core.errors import InputError, UnitsError, shown
-from coeflab.core.limits import LARGEST_NUMBER
+from coeflab.core.errors import InputError, shown
 from coeflab.core.options import NoOptions, parse_options
 from coeflab.core.provenance import InputFile, sha256_of
 from coeflab.core.text.bounded import stream_of
-from coeflab.core.text.delimited import Cells, read_cells, require_unit
+from coeflab.core.text.delimited import Cells, read_cells
+from coeflab.core.texts import input_error
 from coeflab.core.types import Array
-from coeflab.core.units import factor
 from coeflab.law.symbols import ANGULAR, COMPONENTS, FORCES, LINEAR, MOMENTS
 from coeflab.tables.campaign import Campaign, TableDeclaration, TowedInertia
 from coeflab.tables.force_table import ForceTable
@@ -95,15 +94,9 @@ def read(
         A declaration that is missing, a cell that cannot be, a file that is not there.
     """
     parse_options(NoOptions, options or {}, "pmm")
-    wanted = [t for t in campaign.tables if only is None or Path(t.file).name == only]
-    if not wanted:
-        known = ", ".join(t.file for t in campaign.tables)
-        raise InputError(f"no [[table]] for {shown(only)}", f"one of {known}", file=campaign.path, column="table")
     if campaign.half_model:
-        raise InputError(
-            "a half model of oscillating runs", "the whole model", file=campaign.path, column="campaign.half_model"
-        )
-    return tuple(_table(campaign, t) for t in wanted)
+        raise input_error("tables.half_model_oscillates", campaign.path, column="campaign.half_model")
+    return tuple(_table(campaign, t) for t in campaign.wanted(only))
 
 
 def _table(campaign: Campaign, table: TableDeclaration) -> PlanarMotionTable:
@@ -113,10 +106,7 @@ def _table(campaign: Campaign, table: TableDeclaration) -> PlanarMotionTable:
     filters, restoring = _declared(campaign, runs)
     digest = sha256_of(cells.file)
     if table.sha256 and table.sha256 != digest:
-        raise InputError(
-            f"sha256 {digest[:12]}...", f"{table.sha256[:12]}... as campaign.toml declares", file=cells.file,
-            advice="The list of runs was changed after it was entered; restore it or update table.sha256.",
-        )  # fmt: skip
+        raise input_error("tables.run_list_changed", cells.file, digest=digest[:12], sha256=table.sha256[:12])
     drift, attack, speed = (np.array([getattr(r, n) for r in runs]) for n in ("drift", "attack", "speed"))
     zero = np.zeros(len(runs))
     flow = (np.cos(attack) * np.cos(drift), np.sin(drift), np.sin(attack) * np.cos(drift))
@@ -163,35 +153,15 @@ def _table(campaign: Campaign, table: TableDeclaration) -> PlanarMotionTable:
 
 def _si(cells: Cells, name: str, dimension: str) -> Array:
     """A column in SI; errors of its unit at its header."""
-    header = next(h for h in cells.headers if h.name == name)
-    line = cells.first_line - 1
-    unit = require_unit(header, cells.file, line, f"{name} [...]")
-    try:
-        scale = factor(unit, dimension)
-    except UnitsError as why:
-        raise UnitsError(
-            why.found, why.expected, file=cells.file, line=line, column=header.text, advice=why.advice
-        ) from None
-    values = np.asarray(cells.numbers(name) * scale)
-    wild = np.flatnonzero(np.abs(values) > LARGEST_NUMBER)
-    if wild.size:
-        row = int(wild[0])
-        raise InputError(
-            shown(cells.texts(name)[row]),
-            f"a number of at most {LARGEST_NUMBER:g} in SI units",
-            file=cells.file,
-            line=cells.line(row),
-            column=header.text,
-        )
-    return values
+    return cells.si(next(h for h in cells.headers if h.name == name), dimension, f"{name} [...]")
 
 
 def _unknown(cells: Cells, known: tuple[str, ...]) -> None:
     strange = next((h for h in cells.headers if h.name not in known), None)
     if strange is not None:
-        raise InputError(
-            f"the unknown column {shown(strange.text)}", f"one of {', '.join(known)}", file=cells.file,
-            line=cells.first_line - 1, column=strange.text, advice="Name other columns under ignore of the [[table]].",
+        raise input_error(
+            "tables.unknown_column_of_runs", cells.file, cells.first_line - 1, strange.text, text=shown(strange.text),
+            known=", ".join(known),
         )  # fmt: skip
 
 
@@ -216,37 +186,27 @@ def _runs(campaign: Campaign, table: TableDeclaration, cells: Cells) -> list[Pla
         given = {n: float(v[i]) for n, v in numbers.items() if np.isfinite(v[i])}
         motion = texts["motion"][i]
 
-        def fail(found: str, expected: str, column: str, advice: str = "", row: int = i) -> InputError:
-            return InputError(found, expected, file=cells.file, line=cells.line(row), column=column, advice=advice)
+        def fail(code: str, column: str, row: int = i, **facts: Any) -> InputError:
+            return input_error(code, cells.file, cells.line(row), column, **facts)
 
         if motion not in VARIABLES:
-            raise fail(shown(motion), f"one of {', '.join(VARIABLES)}", "motion")
+            raise fail("tables.unknown_motion", "motion", motion=shown(motion), variables=", ".join(VARIABLES))
         if not given.get("omega", 0.0) > 0.0:
-            raise fail("no frequency above zero", "frequency [Hz], omega [rad/s] or period [s]", "frequency")
+            raise fail("tables.no_frequency", "frequency")
         speed = given.get("U", campaign.conditions.speed)
         if not speed > 0.0:
-            raise fail(f"a speed of {speed:g} m/s", "a speed above zero", "U")
+            raise fail("tables.no_speed_of_run", "U", speed=speed)
         moved = DISPLACEMENTS[motion]
         amplitude, phase = given.get(moved), given.get("phase")
         if amplitude is not None and not amplitude > 0.0:
-            raise fail(
-                f"an amplitude of {amplitude:g}",
-                "an amplitude above zero",
-                moved,
-                "A turned sign is a phase of 180 deg.",
-            )
+            raise fail("tables.no_amplitude", moved, amplitude=amplitude)
         if phase is not None and abs(phase) > 2.0 * np.pi:
-            raise fail(
-                f"a phase of {np.degrees(phase):.4g} deg", "a phase within a whole turn", "phase", "Write phase [deg]."
-            )
+            raise fail("tables.phase_beyond_turn", "phase", degrees=np.degrees(phase))
         start = given.get("start", 0.0)
         record = _series(cells.file.parent, texts["file"][i], start, ignored, turn, fail)
         air = texts.get("in_air", [""] * len(cells))[i]
         if not record.has_motion and (amplitude is None or phase is None):
-            raise fail(
-                "a run whose file has no motion, without amplitude or phase", f"{moved} [...] and phase [deg]", moved,
-                f"{moved} = amplitude sin(2 pi f t + phase); or put {moved}(t) into {texts['file'][i]}.",
-            )  # fmt: skip
+            raise fail("tables.no_motion", moved, moved=moved, texts=texts["file"][i])
         # A motion about or along a table's axis that points the other way is the same with the phase turned by half.
         if phase is not None and turn[moved][1] < 0.0:
             phase += np.pi
@@ -286,9 +246,9 @@ def _series(
     """One record, from ``start`` on, turned to FRD."""
     path = (folder / name).resolve()
     if not name or not path.is_relative_to(folder.resolve()):
-        raise fail(shown(name), "a file beside the list of runs or in a folder under it", "file")
+        raise fail("tables.file_elsewhere", "file", path=shown(name))
     if not path.is_file():
-        raise fail(f"no file {shown(name)}", "a CSV file with t [s] and forces", "file")
+        raise fail("tables.no_record", "file", path=shown(name))
     path = folder / name
     if is_captive_test(path):
         time, columns = record(path)
@@ -311,9 +271,7 @@ def _series(
     back = np.flatnonzero(np.diff(time) <= 0.0)
     if back.size:
         at = int(back[0]) + 1
-        raise InputError(
-            f"{time[at]:g} s after {time[at - 1]:g} s", "a time that rises", file=path, line=cells.line(at), column="t"
-        )
+        raise input_error("tables.time_falls", path, cells.line(at), "t", now=time[at], before=time[at - 1])
     return _turned(path, time, columns, start, turn)
 
 
@@ -336,16 +294,10 @@ def _inertia(campaign: Campaign, table: TableDeclaration, runs: tuple[PlanarMoti
     """The inertia that is to be taken out by its numbers."""
     in_air = sum(r.in_air is not None for r in runs)
     if table.contains_inertia is None:
-        raise InputError(
-            "no declaration", "contains_inertia = true or false", file=campaign.path, column="table.contains_inertia",
-            advice="A balance carries the model's inertia, which is as large as the added mass; the force of a solver does not.",
-        )  # fmt: skip
+        raise input_error("tables.inertia_not_declared", campaign.path, column="table.contains_inertia")
     if not table.contains_inertia:
         if in_air:
-            raise InputError(
-                "runs in air of forces without inertia", "contains_inertia = true, or no in_air", file=campaign.path,
-                column="table.contains_inertia",
-            )  # fmt: skip
+            raise input_error("tables.runs_in_air_without_inertia", campaign.path, column="table.contains_inertia")
         return None
     if 0 < in_air < len(runs):
         run = next(r for r in runs if r.in_air is None)
@@ -355,15 +307,9 @@ def _inertia(campaign: Campaign, table: TableDeclaration, runs: tuple[PlanarMoti
     if in_air:
         return None
     if campaign.inertia is None:
-        raise InputError(
-            "contains_inertia = true without mass", "[inertia] with mass, centre_of_gravity, inertia, or a run in air for every "
-            "run (column in_air)", file=campaign.path, column="inertia",
-        )  # fmt: skip
+        raise input_error("tables.inertia_without_mass", campaign.path, column="inertia")
     if campaign.inertia.inertia is None:
-        raise InputError(
-            "no inertia", "inertia = [Ix, Iy, Iz] about the centre of gravity, kg m^2", file=campaign.path,
-            column="inertia.inertia", advice="An oscillating model is accelerated about its axes.",
-        )  # fmt: skip
+        raise input_error("tables.oscillates_without_inertia", campaign.path, column="inertia.inertia")
     return campaign.inertia
 
 
@@ -373,19 +319,13 @@ def _declared(
     """Filters by FRD channel, and restoring moments, refused where they matter and are not declared."""
     keys = campaign.planar_motion
     if keys is None:
-        raise InputError(
-            "no [planar_motion]", '[planar_motion] with filter = { forces = "none" }', file=campaign.path, column="planar_motion",
-            advice="A phase that is off by a degree turns damping into added mass: say what the recording did to the channels.",
-        )  # fmt: skip
+        raise input_error("tables.no_planar_motion", campaign.path, column="planar_motion")
     known = ("forces", "motion", *COMPONENTS)
     strange = next((n for n in keys.filter if n not in known), None)
     if strange is not None:
-        raise InputError(
-            f"the channel {shown(strange)}",
-            f"one of {', '.join(known)}",
-            file=campaign.path,
-            column="planar_motion.filter",
-        )
+        raise input_error(
+            "tables.unknown_channel", campaign.path, column="planar_motion.filter", strange=shown(strange), known=", ".join(known),
+        )  # fmt: skip
     read = {n: Filter.read(t, campaign.path, f"planar_motion.filter.{n}") for n, t in keys.filter.items()}
     turn = _turns(campaign)
     out = {}
@@ -394,16 +334,9 @@ def _declared(
         column = turn[c][0] if c in turn else c
         declared = read.get(column, read.get("forces") if c != "motion" else None)
         if declared is None:
-            raise InputError(
-                f"no filter of {column}", f'planar_motion.filter.{column} = "none" or what it is', file=campaign.path,
-                column="planar_motion.filter", advice="Where motion and forces pass the same filter, declare it for both.",
-            )  # fmt: skip
+            raise input_error("tables.no_filter", campaign.path, column="planar_motion.filter", head=column)
         out[c] = declared
     turning = next((r for r in runs if r.motion in ("roll", "pitch")), None)
     if keys.restoring is None and turning is not None:
-        raise InputError(
-            f"{turning.motion} runs without restoring", "planar_motion.restoring = [roll, pitch], N m/rad", file=campaign.path,
-            column="planar_motion.restoring",
-            advice="Weight and buoyancy swing in phase with the acceleration; [0, 0] where the forces do not contain them.",
-        )  # fmt: skip
+        raise input_error("tables.no_restoring", campaign.path, column="planar_motion.restoring", motion=turning.motion)
     return out, None if keys.restoring is None else (keys.restoring[0], keys.restoring[1])

@@ -18,6 +18,7 @@ from coeflab.core.errors import InputError
 from coeflab.core.limits import JSON_BYTES
 from coeflab.core.options import NoOptions, parse_options
 from coeflab.core.text.bounded import whole_bytes
+from coeflab.core.texts import input_error
 from coeflab.tables.dialect import Marks, name_and_unit
 from coeflab.tables.half_bodies import planes_beside
 from coeflab.tables.monitor_files import decoded, head, header_cells, lines_of
@@ -97,9 +98,7 @@ def run(path: Path, options: Mapping[str, Any] | None = None) -> Run:
     stated |= half
     dialect = {"format": kind}
     if not columns:
-        return Run(
-            path, path.stem, RawTable(path, (), files=(path,)), ended=Ended.EMPTY, why=f"{path.name}: no final value"
-        )
+        return Run.empty(path, f"{path.name}: no final value")
     broken = not all(math.isfinite(float(c.values[0])) for c in columns)
     table = RawTable(path, tuple(columns), files=(path, *texts), dialect=dialect, stated=stated)
     reason = f"{path.name}: a value that is no number" * broken
@@ -127,7 +126,7 @@ def _named_values(lines: Sequence[str]) -> tuple[int, str, list[int]] | None:
 def _values(lines: Sequence[str], path: Path) -> list[RawColumn]:
     found = _named_values(lines)
     if found is None:
-        raise InputError("another content", "a head such as Report Name, Value, Unit", file=path, line=1)
+        raise input_error("tables.no_named_values", path, 1)
     at, delimiter, (name, value, unit) = found
     out: dict[str, RawColumn] = {}
     for n, line in enumerate(lines[at + 1 :], start=at + 2):
@@ -139,7 +138,7 @@ def _values(lines: Sequence[str], path: Path) -> list[RawColumn]:
             raise InputError(f'"{line.strip()[:60]}"', "a name and a number", file=path, line=n)
         own, behind = name_and_unit(cells[name])
         if own in out:
-            raise InputError(f'"{own}" twice', "every name once: one file a run", file=path, line=n)
+            raise input_error("tables.name_twice", path, n, own=own)
         written = cells[unit] if 0 <= unit < len(cells) else behind
         out[own] = _column(own, written.replace("N-m", "N*m"), number)
     return list(out.values())

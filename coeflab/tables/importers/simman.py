@@ -9,8 +9,8 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from coeflab.core.errors import InputError
 from coeflab.core.options import NoOptions, parse_options
+from coeflab.core.texts import input_error
 from coeflab.tables.monitors import raw_table
 from coeflab.tables.raw_table import RawTable, Stated
 from coeflab.tables.simman_files import STATED, captive_test, is_captive_test, is_record, line_of_names
@@ -57,13 +57,9 @@ def raw(path: Path, options: Mapping[str, Any] | None = None) -> RawTable:
     parse_options(NoOptions, options or {}, "importers.simman")
     monitor, units, delimiter = captive_test(path)
     if not len(monitor):
-        raise InputError("a header and no whole rows", "rows of numbers", file=path, line=monitor.header_line)
+        raise input_error("tables.no_whole_rows", path, monitor.header_line)
     if is_record(dict(zip(monitor.names, monitor.columns, strict=True))):
-        raise InputError(
-            "the time series of an oscillating test", "means of static tests, one row a condition", file=path,
-            line=monitor.header_line,
-            advice='Name it in the list of runs of a campaign with importer = "pmm": coeflab fit reads it there.',
-        )  # fmt: skip
+        raise input_error("tables.record_of_oscillating_test", path, monitor.header_line)
     columns = [
         (j, name, unit, name if name in MEANT else "ignore")
         for j, (name, unit) in enumerate(zip(monitor.names, units, strict=True))

@@ -14,12 +14,13 @@ from typing import Any
 
 import numpy as np
 
-from coeflab.core.errors import InputError, shown
+from coeflab.core.errors import shown
 from coeflab.core.options import NoOptions, parse_options
+from coeflab.core.texts import input_error
 from coeflab.tables.half_bodies import planes_beside
 from coeflab.tables.monitor_files import decoded, files_of, first_filled, head, header_cells, kind_of, lines_of, require
-from coeflab.tables.monitors import Monitor, how_ended, in_order, joined, laid_out, raw_table, read_monitor
-from coeflab.tables.raw_table import Ended, RawTable, Run
+from coeflab.tables.monitors import Monitor, how_ended, in_order, joined, laid_out, raw_table, read_monitor, worst_end
+from coeflab.tables.raw_table import Run
 
 summary = "monitors and monitor plots of Simcenter STAR-CCM+ exported as CSV"
 computed = True
@@ -84,17 +85,17 @@ def run(path: Path, options: Mapping[str, Any] | None = None) -> Run:
     parse_options(NoOptions, options or {}, "importers.starccm")
     files = _monitors(path) if path.is_dir() else (path,)
     if not files:
-        raise InputError("no monitors of one run", "a folder of one run, or one file", file=path)
+        raise input_error("tables.no_monitors_of_one_run", path)
     if not path.is_dir() and path.is_file() and not head(path).strip():
-        return Run(path, path.stem, RawTable(path, (), files=files), ended=Ended.EMPTY, why=f"{path.name}: empty")
+        return Run.empty(path, f"{path.name}: empty")
     read = [_read(f) for f in files]
     monitors = [in_order(m, 0) for m, _ in read]
     counted = {_label(m.names[0])[0] for m in monitors}
     if len(counted) > 1:
         names = ", ".join(sorted(counted))
-        raise InputError(f"monitors over {shown(names)}", "monitors over one of them", file=path)
+        raise input_error("tables.monitors_over_several", path, names=shown(names))
     ends = [how_ended(m, range(len(m.names))[1:]) for m in monitors]
-    ended, why = max(ends, key=lambda e: (e[0] is not Ended.WHOLE, e[0] is Ended.DIVERGED))
+    ended, why = worst_end(ends)
     whole = joined(monitors, next(iter(counted)))
     columns = [(j, *_label(name), _means(name) if j == 0 else "") for j, name in enumerate(whole.names)]
     delimiter = read[0][1]
@@ -152,10 +153,7 @@ def _read(path: Path) -> tuple[Monitor, str]:
     require(raw, path, "starccm", 'a monitor of STAR-CCM+ ("Drag Monitor: Drag Monitor (N)")')
     names, delimiter, at = _header(raw)
     if len(names) < 2 or not _means(names[0]):
-        raise InputError(
-            f"{shown(names[0])} in the first column", "iterations or times", file=path, line=at, column=names[0],
-            advice="Export the monitor plot over Iteration or Physical Time.",
-        )  # fmt: skip
+        raise input_error("tables.first_column_counts_nothing", path, at, names[0], names=shown(names[0]))
     monitor = read_monitor(path, laid_out(raw, path, at, names, delimiter, at))
     return _once(monitor), delimiter
 

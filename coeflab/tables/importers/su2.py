@@ -30,10 +30,11 @@ from coeflab.core.errors import InputError, shown
 from coeflab.core.limits import LARGEST_NUMBER, MONITOR_FILES, TOML_BYTES
 from coeflab.core.options import NoOptions, parse_options
 from coeflab.core.text.bounded import stream_of
+from coeflab.core.texts import input_error
 from coeflab.tables.half_bodies import planes_beside, stated_plane
 from coeflab.tables.monitor_files import decoded, files_of, first_filled, head, kind_of, lines_of, one_run, require
 from coeflab.tables.monitors import Monitor, how_ended, in_order, laid_out, pieced, raw_table, read_monitor
-from coeflab.tables.raw_table import Ended, RawTable, Run, Stated
+from coeflab.tables.raw_table import Run, Stated
 
 summary = "histories of SU2 6, 7 and 8 (history.csv, history.dat) with the config file beside them"
 computed = True
@@ -106,7 +107,7 @@ def run(path: Path, options: Mapping[str, Any] | None = None) -> Run:
     config, beside, remarks = _config(files)
     files = (*files, config.path) if config else files
     if not any(p.names for p in pieces):
-        return Run(path, path.stem, RawTable(path, (), files=files), ended=Ended.EMPTY, why=f"{files[0].name}: empty")
+        return Run.empty(path, f"{files[0].name}: empty", files)
     index, inner = _index(pieces)
     pieces = [in_order(p, index, inner) for p in pieces]
     judged = [j for j, name in enumerate(pieces[-1].names) if _SURFACE.sub(r"\g<name>", name) in JUDGED]
@@ -142,7 +143,7 @@ def _histories(path: Path) -> tuple[Path, ...]:
     if ordered := one_run(found, _PART):
         return ordered
     names = ", ".join(f.name for f in found) or "no history of SU2"
-    raise InputError(shown(names, 200), "the history of one run", file=path, advice="Name one history file.")
+    raise input_error("tables.several_histories", path, names=shown(names, 200))
 
 
 def _read(path: Path) -> Monitor:
@@ -159,10 +160,7 @@ def _read(path: Path) -> Monitor:
     zone = next((n for n, line in filled if n > at and line.startswith("ZONE")), at)
     names = tuple(n if names.index(n) == i else f"{n} ({names[:i].count(n) + 1})" for i, n in enumerate(names))
     if not any(_SURFACE.sub(r"\g<name>", n).partition("[")[0] in COEFFICIENTS for n in names):
-        raise InputError(
-            "no coefficients of force", "CFx, CFy, CFz, CMx, CMy, CMz", file=path, line=at,
-            advice="Write HISTORY_OUTPUT= (ITER, RMS_RES, AERO_COEFF) into the config file.",
-        )  # fmt: skip
+        raise input_error("tables.no_coefficients_of_force", path, at)
     monitor = read_monitor(path, laid_out(raw, path, zone, names, ",", at))
     if any(n in names for n in INDICES):
         return monitor
@@ -303,7 +301,7 @@ def _read_config(path: Path) -> _Config:
     except OSError as why:
         raise InputError(str(why.strerror or why), "a readable file", file=path) from None
     if len(raw) > TOML_BYTES or b"\0" in raw:
-        raise InputError("binary content or more than 1 MiB", "a config file of SU2", file=path)
+        raise input_error("tables.no_config_file", path)
     keys: dict[str, tuple[str, int]] = {}
     for number, line in enumerate(lines_of(raw.decode("utf-8", "replace")), start=1):
         if match := _KEY.match(line.partition("%")[0]):

@@ -17,13 +17,14 @@ from coeflab.core.limits import CSV_LINE, TABLE_CELLS, TABLE_CUT_LINES, TABLE_TE
 from coeflab.core.options import parse_options
 from coeflab.core.text.bounded import text_stream_of
 from coeflab.core.text.series import matrix_of
+from coeflab.core.texts import input_error
 from coeflab.core.types import Array
 from coeflab.core.wording import listed
 from coeflab.tables import text_dialect
 from coeflab.tables.blocks import Title, with_blocks
+from coeflab.tables.column_names import named_as
 from coeflab.tables.dialect import Cells, Marks, is_house_table, is_of_openfoam, raw_columns
 from coeflab.tables.monitor_files import head, kind_of
-from coeflab.tables.proposals import named_as
 from coeflab.tables.raw_table import RawTable
 
 summary = "any delimited text: delimiter, decimal mark, units and encoding detected and reported"
@@ -115,13 +116,7 @@ class _Body:
             TABLE_CELLS // self.dialect.width, TABLE_TEXTS // max(len(self.keep), 1) if self.keep else TABLE_CELLS
         )
         if self.rows > most:
-            raise InputError(
-                f"more than {most:,} rows",
-                "a smaller table",
-                file=self.path,
-                line=int(lines[-1]),
-                advice="Average time series first.",
-            )
+            raise input_error("tables.too_many_rows", self.path, int(lines[-1]), most=most)
 
     def _at_once(self, lines: list[str]) -> Array | None:
         """All rows by numpy, or None where a line is anything but a row of plain numbers."""
@@ -172,10 +167,7 @@ class _Body:
             self._leave_out(n, "the last number is not whole", ended)
             return None
         if len(d.numbers) > 1 and not self._any_number(cells):
-            raise InputError(
-                f"words among the rows ({shown(stripped)})", "rows of numbers under one header", file=self.path, line=n,
-                advice="Make a file of each table, or begin the line with #.",
-            )  # fmt: skip
+            raise input_error("tables.words_among_rows", self.path, n, stripped=shown(stripped))
         return cells
 
     def is_title(self, cells: list[str]) -> bool:
@@ -197,9 +189,8 @@ class _Body:
         self.cut.append((n, why if ended else f"{why}, and the line has no end: the file is cut there"))
         if len(self.cut) > TABLE_CUT_LINES and len(self.cut) > 0.01 * self.rows + TABLE_CUT_LINES:
             first, words = self.cut[0]
-            raise InputError(
-                f"{words} here and in {len(self.cut) - 1} more lines", f"{self.dialect.width} cells in a row", file=self.path,
-                line=first, advice="Say delimiter, decimal or header by the options.",
+            raise input_error(
+                "tables.lines_of_other_width", self.path, first, words=words, count=len(self.cut) - 1, width=self.dialect.width,
             )  # fmt: skip
 
     def _values(self, k: int, cells: Sequence[str], lines: list[int], plain: bool) -> Array:
@@ -221,7 +212,7 @@ def _read(path: Path, dialect: text_dialect.TextDialect, keep: frozenset[int]) -
     for line, lines, ended in _blocks(path, dialect):
         body.add(line, lines, ended)
     if not body.rows:
-        raise InputError("a header and no whole rows", "rows of numbers", file=path, line=dialect.start)
+        raise input_error("tables.no_whole_rows", path, dialect.start)
     return body
 
 

@@ -7,9 +7,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
 from itertools import pairwise
 
-from coeflab.core.errors import InputError
-from coeflab.core.units import quantity
-from coeflab.tables.dialect import Marks, Row, one_reading
+from coeflab.tables.dialect import Marks, Row
 from coeflab.tables.half_bodies import half_in_words
 from coeflab.tables.raw_table import HALF_MODEL, Stated
 from coeflab.tables.vocabulary import folded
@@ -23,7 +21,7 @@ from coeflab.tables.words.points import (
     datum_in_words,
     moments_point,
 )
-from coeflab.tables.words.primes import prime_basis
+from coeflab.tables.words.primes import prime_basis, size_in
 from coeflab.tables.words.water import APART, density_in_words, states_density, with_words_before
 
 _NAMES = {
@@ -242,7 +240,7 @@ def _sizes(text: str, marks: Marks) -> Iterator[tuple[str, str, float, str]]:
     for key, m in lengths:
         if key == "conditions.speed" and (_ANOTHER_SPEED.search(text[: m.start()]) or _SEVERAL.match(text[m.end() :])):
             continue
-        if size := _in_si(m["number"], m["unit"], key, marks):
+        if size := size_in(m["number"], m["unit"] or "", _DIMENSIONS[key], marks):
             short = folded(m["name"])
             overall = key == "scaling.length" and _OVERALL.search(m["name"])
             name = short if short in _LENGTHS else "loa" if overall else ""
@@ -255,15 +253,5 @@ def _sizes(text: str, marks: Marks) -> Iterator[tuple[str, str, float, str]]:
         begun = any(begin < m.end("number") <= end for begin, end in spans)
         if not name or begun or (not unit and len(name) == 1):
             continue
-        if size := _in_si(m["number"], unit, _KEYS[name], marks):
+        if size := size_in(m["number"], unit, _DIMENSIONS[_KEYS[name]], marks):
             yield _KEYS[name], "loa" if name in ("lua", "luea") else name, size, m[0]
-
-
-def _in_si(number: str, unit: str, key: str, marks: Marks) -> float:
-    """A number above zero in SI; zero where it has none, or two readings."""
-    value = one_reading(number, marks)
-    try:
-        size = 0.0 if value is None else quantity(f"{value!r} {unit}" if unit else value, _DIMENSIONS[key])
-    except InputError:
-        return 0.0
-    return max(size, 0.0)

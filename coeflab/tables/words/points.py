@@ -10,9 +10,8 @@ from coeflab.tables.dialect import Marks, one_reading
 from coeflab.tables.raw_table import Stated
 
 POINT_OF = "axes.reference_point"
-POINT_FROM = (
-    "axes.from"  # no key of campaign.toml: x, its unit or L, and the point that the words count the moments' point from
-)
+# No key of campaign.toml: x, its unit or L, and the point that the words count the moments' point from.
+POINT_FROM = "axes.from"
 UNSAID = "nose?"  # in its place where a share of the length has no point
 ARM_FROM = "table.arm_from"  # no key of campaign.toml: where words place the point that R and U are measured to
 OF_MOMENTS = "moments-datum"  # in its place where they count from the point of the moments
@@ -47,12 +46,8 @@ _AT = re.compile(
 _HEIGHT = re.compile(
     r"(?i)(?<![^\W_])(?:below|above|under|over|unter\w*|[üu]e?ber|oberhalb|sous|dessus|dessous|[yz])(?![^\W_])"
 )
-_ENDS = {
-    "nose": -1.0,
-    "FP": -1.0,
-    "stern": 1.0,
-    "AP": 1.0,
-}  # points at an end of the body, and to which side of them it lies
+# Points at an end of the body, and to which side of them it lies.
+_ENDS = {"nose": -1.0, "FP": -1.0, "stern": 1.0, "AP": 1.0}
 _POINTS = {"mids": "midship", "amid": "midship", "haup": "midship", "maît": "midship", "mait": "midship", "nose": "nose", "bow": "nose",
            "bug": "nose", "nase": "nose", "cb": "cb", "cob": "cb", "cg": "cg", "cog": "cg", "schw": "cg",
            "nez": "nose", "stem": "nose", "etra": "nose", "étra": "nose", "ster": "stern", "tail": "stern", "heck": "stern", "fp": "FP", "forw": "FP",

@@ -20,45 +20,30 @@ _SCALE = re.compile(
     r"(?:1\s*[:/]\s*)?(?P<scale>[1-9]\d{0,3}(?:[.,]\d{1,4})?)(?![\d:/%]|\s*(?:kN|N|m|deg|m/s)\b)"
 )
 BASIS = "basis.area"  # no key of campaign.toml: what the source's coefficients were divided by, beside 1/2 rho U^2
-SIZES = {
-    "T": "basis.draught", "B": "basis.breadth", "D": "basis.diameter", "V": "basis.volume",
-    "wetted": "basis.wetted_area", "frontal": "basis.frontal_area", "lateral": "basis.lateral_area",
+# Sizes by their letters and areas by their names: dimension, letters, words.
+_OF_BODY = {
+    "T": ("draught", "length", r"T", r"draughts?|drafts?|tiefgang|tirant\s+d['’]eau"),
+    "B": ("breadth", "length", r"B", r"breadth|beam|breite|largeur|bau"),
+    "D": ("diameter", "length", r"[Dd]", r"(?:max(?:imum)?\.?\s+|hull\s+)?diam(?:eter|[èe]tre)|(?:rumpf)?durchmesser"),
+    "V": ("volume", "volume", r"V|∇", r"volume|volumen|displaced\s+volume|verdr(?:ä|ae)ngung(?:svolumen)?|volume\s+de\s+car[èe]ne|∇|nabla"),
+    "wetted": ("wetted_area", "area", r"S_?w(?:et)?", r"wetted\s+(?:surface|area)(?:\s+area)?|benetzte\s+(?:ober)?fl(?:ä|ae)che|surface\s+mouill[ée]e"),
+    "frontal": (
+        "frontal_area", "area", r"A_?f", r"frontal\s+area|cross[\s-]*section(?:al)?\s+area|mid(?:ship)?\s*section\s+area|stirnfl(?:ä|ae)che"
+        r"|spantfl(?:ä|ae)che|hauptspant\w*|querschnittsfl(?:ä|ae)che|ma[îi]tre[\s-]couple|surface\s+frontale|section\s+transversale",
+    ),
+    "lateral": (
+        "lateral_area", "area", r"A_?l(?:at)?",
+        r"lateral\s+area|planform\s+area|projected\s+area|lateralfl(?:ä|ae)che|projizierte\s+fl(?:ä|ae)che|surface\s+lat[ée]rale|plan\s+lat[ée]ral",
+    ),
 }  # fmt: skip
-_POWERS = {
-    "T": "length",
-    "B": "length",
-    "D": "length",
-    "V": "volume",
-    "wetted": "area",
-    "frontal": "area",
-    "lateral": "area",
-}
-_WORDS = {
-    "T": r"draughts?|drafts?|tiefgang|tirant\s+d['’]eau",
-    "B": r"breadth|beam|breite|largeur|bau",
-    "D": r"(?:max(?:imum)?\.?\s+|hull\s+)?diam(?:eter|[èe]tre)|(?:rumpf)?durchmesser",
-    "V": r"volume|volumen|displaced\s+volume|verdr(?:ä|ae)ngung(?:svolumen)?|volume\s+de\s+car[èe]ne|∇|nabla",
-    "wetted": r"wetted\s+(?:surface|area)(?:\s+area)?|benetzte\s+(?:ober)?fl(?:ä|ae)che|surface\s+mouill[ée]e",
-    "frontal": r"frontal\s+area|cross[\s-]*section(?:al)?\s+area|mid(?:ship)?\s*section\s+area|stirnfl(?:ä|ae)che|spantfl(?:ä|ae)che|hauptspant\w*"
-    r"|querschnittsfl(?:ä|ae)che|ma[îi]tre[\s-]couple|surface\s+frontale|section\s+transversale",
-    "lateral": r"lateral\s+area|planform\s+area|projected\s+area|lateralfl(?:ä|ae)che|projizierte\s+fl(?:ä|ae)che|surface\s+lat[ée]rale|plan\s+lat[ée]ral",
-}
-_LETTERS = {
-    "T": r"T",
-    "B": r"B",
-    "D": r"[Dd]",
-    "V": r"V|∇",
-    "wetted": r"S_?w(?:et)?",
-    "frontal": r"A_?f",
-    "lateral": r"A_?l(?:at)?",
-}
+SIZES = {name: f"basis.{what}" for name, (what, *_) in _OF_BODY.items()}
 _UNITS = {"length": r"mm|cm|m|ft|in", "volume": r"m\^?3|m³|l|cm\^?3", "area": r"m\^?2|m²|cm\^?2|cm²|ft\^?2"}
 _SIZE = {
     name: re.compile(
-        rf"(?<![^\W_])(?:(?i:{words})(?:\s+\(?(?:{_LETTERS[name]})\)?)?|(?:{_LETTERS[name]})(?=\s*[=:]))"
-        rf"\s*(?:=|:|\bof\b|\bis\b|\bvon\b|\bde\b)?\s*(?P<number>\d[\d.,]*)\s*[\[(]?(?P<unit>{_UNITS[_POWERS[name]]})(?![^\W_])"
+        rf"(?<![^\W_])(?:(?i:{words})(?:\s+\(?(?:{letters})\)?)?|(?:{letters})(?=\s*[=:]))"
+        rf"\s*(?:=|:|\bof\b|\bis\b|\bvon\b|\bde\b)?\s*(?P<number>\d[\d.,]*)\s*[\[(]?(?P<unit>{_UNITS[dimension]})(?![^\W_])"
     )
-    for name, words in _WORDS.items()
+    for name, (_, dimension, letters, words) in _OF_BODY.items()
 }
 _RAISED = r"(?:\s*(?:\^|\*\*)?\s*[({]?\s*(?P<power>2\s*/\s*3|[123])\s*[)}]?|(?P<small>[²³]))?"
 # One factor of a product: a length by its name, a size, the speed.
@@ -104,7 +89,7 @@ def prime_basis(texts: Iterable[tuple[str, str]], marks: Marks) -> dict[str, Sta
     out: dict[str, Stated] = {}
     for place, text in texts:
         for name, pattern in _SIZE.items():
-            if (m := pattern.search(text)) and (size := _in_si(m["number"], m["unit"], _POWERS[name], marks)):
+            if (m := pattern.search(text)) and (size := size_in(m["number"], m["unit"], _OF_BODY[name][1], marks)):
                 out.setdefault(SIZES[name], Stated(size, f'{place}: "{" ".join(m[0].split())}"', offered=True))
         if m := _SCALE.search(text):
             out.setdefault(
@@ -120,16 +105,14 @@ def prime_basis(texts: Iterable[tuple[str, str]], marks: Marks) -> dict[str, Sta
     return out
 
 
-def _in_si(number: str, unit: str, dimension: str, marks: Marks) -> float:
+def size_in(number: str, unit: str, dimension: str, marks: Marks) -> float:
+    """A number above zero in SI; zero where it has none, or two readings."""
     value = one_reading(number, marks)
     plain = unit.replace("²", "^2").replace("³", "^3")
-    if value is None or value <= 0.0:
-        return 0.0
-    if dimension == "volume":
-        per = {"l": 1e-3, "cm3": 1e-6, "cm^3": 1e-6}
-        return value * per.get(plain, 1.0)
+    if value is not None and dimension == "volume":
+        return max(value * {"l": 1e-3, "cm3": 1e-6, "cm^3": 1e-6}.get(plain, 1.0), 0.0)
     try:
-        return max(quantity(f"{value!r} {plain}", dimension), 0.0)
+        return 0.0 if value is None else max(quantity(f"{value!r} {plain}" if plain else value, dimension), 0.0)
     except InputError:
         return 0.0
 
@@ -152,7 +135,7 @@ def _of_sentence(text: str) -> tuple[str, str] | None:
     """The area in ``bezogen auf L·T`` and ``coefficients by the wetted area``."""
     for head in (*_SAYS_BY.finditer(text), *_AREA_IS.finditer(text)):
         for name in ("wetted", "frontal", "lateral"):
-            if m := re.compile(rf"(?i)(?:{_WORDS[name]})").match(text, head.end()):
+            if m := re.compile(rf"(?i)(?:{_OF_BODY[name][3]})").match(text, head.end()):
                 return name, text[head.start() : m.end()]
         factors, end = _product(text, head.end())
         if (len(factors) > 1 or any(p for _, p in factors)) and (basis := _basis(factors)):

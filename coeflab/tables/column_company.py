@@ -1,0 +1,345 @@
+"""What every column of a table probably is, with the others beside it: of several the first, and what only company tells."""
+
+from __future__ import annotations
+
+import re
+from collections import Counter
+from collections.abc import Iterator, Mapping, Sequence, Set
+from dataclasses import replace
+
+import numpy as np
+
+from coeflab.core.axes import Axes
+from coeflab.core.types import Array
+from coeflab.core.units import fits, quantity
+from coeflab.law.symbols import LINEAR, MOMENTS
+from coeflab.tables.column_map import (
+    FORCES,
+    SETTINGS,
+    read_column_map,
+    share,
+)
+from coeflab.tables.column_names import UNKNOWN, named_as
+from coeflab.tables.proposals import AREA, LENGTH_OF, OPEN, PURE, Proposal, proposed
+from coeflab.tables.raw_table import RawColumn, RawTable
+from coeflab.tables.vocabulary import folded, vocabulary
+from coeflab.tables.words.axes import BODY_AXES
+
+BESIDE_WIND = "lift, drag and moments are there as coefficients already"
+TURNED_WIND = "lift and drag turned by alpha, in every row"
+PROPELLER = "a coefficient of the propeller, by its name beside J"
+OF_PROPELLER = frozenset({"ct", "cp", "cq", "kt", "kq", "10kq"})
+SIDEWAYS = frozenset({"beta", "v", "r", "R", "dr", "Y", "side"})  # without which a Cn need not be a yaw moment
+FEW_STRANGE = 2  # columns without a known name or unit that are asked one by one
+MOST_ASKED = 6  # of which more ask a person too much
+SAME = 0.1
+TURNED_APART = 0.02
+GOES_ALONG = 0.9  # correlation with a setting: a coupled rudder, not a second measurement
+VARIED = frozenset(SETTINGS) - {"speed"}  # which alone make no sweep
+FROUDE = 1.5
+MACH = 1.2  # of what may still be water or a slow wind tunnel
+
+
+def proposals(
+    raw: RawTable, known: Mapping[str, object] | None = None, frame: Axes | None = None
+) -> tuple[Proposal, ...]:
+    """What every column of a table may be; of several that may be the same, or name the rows, only the first keeps it.
+
+    Parameters
+    ----------
+    raw : RawTable
+    known : mapping, optional
+        What a person says of coefficients and of units that are not stated; see `proposed`.
+    frame : Axes, optional
+        Of the file, where they are known.
+    """
+    stated = {key: None if s.contradicted else s.value for key, s in raw.stated.items()} | dict(known or {})
+    offered = any(s.offered for key, s in raw.stated.items() if key.startswith("coefficients.")) or bool(known)
+    out: list[Proposal] = []
+    taken: dict[str, str] = {}
+    turned = _turned_wind(raw.columns)
+    pure = {folded(c.name) for c in raw.columns if c.unit in PURE} & {*vocabulary().coefficients, *vocabulary().several}
+    names = {named_as(c.name).partition(" ")[0] for c in raw.columns}
+    for column in raw.columns:
+        if column.name in turned:
+            one = Proposal("ignore", TURNED_WIND, note=TURNED_WIND)
+        else:
+            one = by_said_area(_of_company(proposed(column, stated), column, pure, names, frame, stated), known or {})
+        one = replace(one, certain=False) if offered and "coefficient" in one.text else one
+        one = _along_the_body(one, column, raw.stated[BODY_AXES].place) if BODY_AXES in raw.stated else one
+        if one.why == UNKNOWN and column is raw.columns[0] and _is_index(column):
+            one = Proposal("point", "it counts the rows")
+        given = one.said
+        if given is not None and given.name not in ("label", "ignore"):
+            if given.name == "point" and (given.plain in taken or _repeats(column)):
+                one = Proposal("label", f"{one.why}, but rows share it" if _repeats(column) else one.why, one.certain)
+            elif given.plain in taken:
+                first = next(i for i, c in enumerate(raw.columns) if c.name == taken[given.plain])
+                again = f"{given.plain} is {{}} already"
+                unsized = (
+                    out[first].text.endswith(f"[{OPEN}]") and "coefficient" in one.text
+                )  # a force without unit beside its coefficient
+                if (one.whole and not out[first].whole) or unsized:
+                    out[first] = Proposal("ignore", again.format(column.name))
+                    taken[given.plain] = column.name
+                else:
+                    kinds = {"coefficient" in o.text for o in (one, out[first])}  # a force beside its coefficient
+                    settled = (out[first].whole and not one.whole) or len(kinds) == 2
+                    one = Proposal("ignore" * settled, again.format(taken[given.plain]))
+            else:
+                taken[given.plain] = column.name
+        out.append(one)
+    if "drag" in taken and not {"side", "lift"} & set(taken) and (body := next((c for c in "YZ" if c in taken), "")):
+        out = [_beside_the_body(one, taken[body], body) for one in out]
+    if len(doubles := [o for o in out if not o.text and o.why.endswith(" already")]) > FEW_STRANGE:
+        out = [replace(o, text="ignore", note=o.why) if o in doubles else o for o in out]
+    out = _without_strangers(raw, out)
+    for i, column in enumerate(raw.columns):
+        # V is the speed beside what says where the water comes from, and over a resistance; alone it may be a sway velocity in capitals.
+        over = {"drag"} - {
+            read_column_map(n).name for c in raw.columns if (n := named_as(c.name)) in ("Y", "N", "side")
+        }
+        beside = ({"alpha", "beta", "R"} | over) & set(taken) and not {"U", "v"} & set(taken)
+        if beside and column.name.strip() == "V" and out[i].why.startswith(UNKNOWN) and fits(column.unit, "speed"):
+            out[i] = Proposal(f"U [{column.unit}]", "its unit, beside an angle or a radius")
+            taken["U"] = column.name
+        if folded(column.name) in vocabulary().lists["ship"] and taken.get("U", column.name) != column.name:
+            out[i] = Proposal("ignore", f"U is {taken['U']} already")
+        if column.name.strip() == "Q" and {"rps", "thrust"} & set(taken) and fits(column.unit, "moment"):
+            out[i] = Proposal("ignore", "the torque of the propeller, by its name beside its rate or thrust")
+        if {"r", "R"} <= set(taken) and column.name == taken["R"]:
+            out[i] = Proposal("ignore", f"r is {taken['r']} already, U over it")
+    return tuple(_without_a_doubled_flow(raw, _without_lone_errors(out)))
+
+
+def _is_index(column: RawColumn) -> bool:
+    """Whether a column without a name, or called so, counts the rows from 0 or 1, again from there where tables were joined."""
+    first = column.values[0] if len(column.values) > 1 else np.nan
+    steps = np.diff(column.values)
+    unnamed = column.name == "column 1" or folded(column.name) in vocabulary().lists["index"]
+    return unnamed and first in (0.0, 1.0) and bool(np.all((steps == 1.0) | (column.values[1:] == first)))
+
+
+def _without_lone_errors(out: Sequence[Proposal]) -> list[Proposal]:
+    """A standard error whose force is left out goes with it."""
+    valued = {m.name for one in out if (m := one.said) is not None and not m.error}
+    lone = [(m := one.said) is not None and m.error and m.name not in valued for one in out]
+    return [
+        Proposal("ignore", f"no column {one.said.name}") if o and one.said else one
+        for one, o in zip(out, lone, strict=True)
+    ]
+
+
+def _without_a_doubled_flow(raw: RawTable, out: Sequence[Proposal]) -> Iterator[Proposal]:
+    """Of angles of the flow beside components of the speed those that are zeros throughout say nothing."""
+    roles = [one.said for one in out]
+    still = [not np.any(np.nan_to_num(c.values)) for c in raw.columns]
+    both = [
+        ("angle" if m.role == "angle" else "speed")
+        if m and not m.error and (m.role == "angle" or m.name in LINEAR)
+        else ""
+        for m in roles
+    ]
+    varied = {kind for kind, zero in zip(both, still, strict=True) if kind and not zero}
+    for one, kind, zero in zip(out, both, still, strict=True):
+        yield (
+            Proposal("ignore", f"{one.why}; zeros throughout")
+            if kind and zero and varied and kind not in varied
+            else one
+        )
+
+
+def _turned_wind(columns: Sequence[RawColumn]) -> frozenset[str]:
+    """Names of the pure numbers that are lift and drag along the body, normal or axial, of either sign: no forces of their own."""
+    own = {named_as(c.name): c for c in reversed(columns) if not c.is_text and not c.means}
+    if not {"alpha", "lift", "drag"} <= {*own} or own["lift"].unit not in PURE:
+        return frozenset()
+    alpha, lift, drag = (own[name].values for name in ("alpha", "lift", "drag"))
+    if not np.any(np.nan_to_num(alpha)):
+        return frozenset()
+    angle = alpha if own["alpha"].unit == "rad" else np.radians(alpha)
+    normal, axial = lift * np.cos(angle) + drag * np.sin(angle), drag * np.cos(angle) - lift * np.sin(angle)
+    used = {own[name].name for name in ("alpha", "lift", "drag")}
+    others = [c for c in columns if c.unit in PURE and not c.is_text and c.name not in used]
+    return frozenset(c.name for c in others for force in (normal, axial) if _agree(np.abs(c.values), np.abs(force)))
+
+
+def _agree(one: Array, other: Array) -> bool:
+    """Whether two columns agree in every row where both are known, within `TURNED_APART` of the largest."""
+    both = np.isfinite(one) & np.isfinite(other)
+    largest = float(np.max(one[both], initial=0.0))
+    return bool(both.sum() > FEW_STRANGE) and float(np.max(np.abs(one - other)[both])) < TURNED_APART * largest
+
+
+def _of_company(
+    one: Proposal, column: RawColumn, pure: Set[str], names: Set[str], frame: Axes | None, stated: Mapping[str, object]
+) -> Proposal:
+    """A column that the coefficients beside it make another thing than its name: M a Mach number, N a count, CN a normal force.
+
+    Parameters
+    ----------
+    one : Proposal
+    column : RawColumn
+    pure : set of str
+        Folded names of the coefficients of the table.
+    names : set of str
+        What all columns are by their names.
+    frame : Axes or None
+        Of the file, where they are known.
+    stated : mapping
+        As for `proposed`.
+    """
+    known, bare = column.values[np.isfinite(column.values)], folded(column.name)
+    if (
+        "J" in names
+        and bare in OF_PROPELLER
+        and column.unit in PURE
+        and not {"alpha", "beta", "lift", "cd"} & (names | pure)
+    ):
+        return Proposal("ignore", PROPELLER)
+    if "cd" in pure and column.unit in PURE and column.name.strip() in ("M", "N") and known.size:
+        is_mach = one.text[0] == "M" and known.min() > 0.0 and known.max() < MACH
+        if is_mach or (one.text[0] == "N" and known.min() >= 1.0 and np.all(known == np.round(known))):
+            what = "a Mach number" if is_mach else "a count"
+            note = f"{what} by its values beside coefficients; {one.text[0]} [{OPEN}] if it is the moment"
+            return Proposal("ignore", note, note=note)
+    froude = bare in ("fn", "fr") and column.unit in PURE
+    if froude and known.size and 0.0 < known.min() <= known.max() < FROUDE:
+        note = f"a Froude number by its values; Z [{OPEN}] if it is a force"
+        return Proposal("ignore", note, note=note * (bare == "fn"))
+    own = {vocabulary().coefficients.get(name) for name in pure}
+    name = one.said.name if one.said else ""
+    place = column.name.strip() in ("Y", "y") and column.unit in PURE and not {"beta", "v", "r"} & names
+    twice = (
+        name in ("X", "Z") or place or (name in own - {"lift", "drag"} and one.whole and "coefficient" not in one.text)
+    )
+    if {"lift", "drag"} <= own and name in FORCES and twice and not column.means:
+        return Proposal("ignore", BESIDE_WIND, note=BESIDE_WIND)
+    of_body = {"ca", "ct", "cn"} & pure if "cn" in pure else set()
+    if len(of_body) > 1 and bare in of_body and {"cl", "cd"} <= pure:
+        return Proposal("ignore", BESIDE_WIND, note=BESIDE_WIND)
+    if bare == "cn" and column.unit in PURE and "alpha" in names and not SIDEWAYS & names and not {"cll", "ca"} & pure:
+        return Proposal("", "N or -Z by its name: no column is of a motion sideways, so it may be the normal force")
+    if bare == "ct" and {"cn", "ct"} == of_body and "alpha" in names:
+        return Proposal("", "X or -X by its name beside Cn: positive forward or aft")
+    if {"ca", "cn"} <= pure and bare in ("ca", "cn"):
+        axial = bare == "ca"
+        body, beside, way = ("X", "CN", "aft") if axial else ("Z", "CA", "up")
+        along = 0.0 if frame is None else float(frame.rotation[0, 0] if axial else frame.rotation[2, 2])
+        if not along:
+            return Proposal("", f"its name beside {beside}: positive {way}, whatever the axes")
+        # x forward and z down are +1: an axial force is positive aft, a normal force positive up.
+        plain = proposed(replace(column, name=f"C{body.casefold()}"), stated)
+        return replace(
+            plain, text=f"{'-' * (along > 0.0)}{plain.text}", why=f"its name beside {beside}: positive {way}"
+        )
+    return one
+
+
+def _without_strangers(raw: RawTable, out: list[Proposal]) -> list[Proposal]:
+    """Of many columns that neither name nor unit says anything of, those that cannot be a setting are of no use.
+
+    Nothing is left out where no force or no setting is known without them.
+    """
+    strange = [i for i, one in enumerate(out) if one.why == UNKNOWN and raw.columns[i].name.strip() != "V"]
+    roles, many = {one.role for one in out}, len(strange) > MOST_ASKED
+    if len(strange) <= FEW_STRANGE or "force" not in roles or roles.isdisjoint(VARIED | {"speed"} if many else VARIED):
+        return out
+    settings = [c.values for c, one in zip(raw.columns, out, strict=True) if one.role in VARIED]
+    plain = {c.name.strip() for c in raw.columns}
+    series = Counter(_counted(raw.columns[i].name) for i in strange)
+    idle = {
+        i
+        for i in strange
+        if _is_of_a_force(raw.columns[i].name, plain)
+        or series[_counted(raw.columns[i].name)] > FEW_STRANGE
+        or not _like_a_setting(raw.columns[i].values, settings)
+    }
+    if roles.isdisjoint(VARIED) and len({*strange} - idle) > FEW_STRANGE:
+        idle = {*strange}
+    return [
+        replace(one, text="ignore", why=f"{UNKNOWN}, one of {len(strange)} such") if i in idle else one
+        for i, one in enumerate(out)
+    ]
+
+
+def _counted(name: str) -> str:
+    """A name of a series without its number: Cp_ of Cp_017; of others the name itself."""
+    return re.sub(r"(?<=[A-Za-z_ ])\d+$", "", name.strip())
+
+
+def _is_of_a_force(name: str, names: Set[str]) -> bool:
+    """Whether a name is that of a force of the table with a letter or words behind it: Cza beside Cz, Fx_visc beside Fx, Ma beside M."""
+    own = re.split(r"(?<=[a-z0-9])(?=[A-Z_ ])|[_ ]", name.strip())[0]
+    return any(
+        own in (base, f"{base}{own[-1:]}") and base != name.strip() for base in names if named_as(base) in FORCES
+    )
+
+
+def _like_a_setting(values: Array, settings: Sequence[Array]) -> bool:
+    """Whether a column takes few levels again and again, or goes along with a setting: left out, it would bend a slope unseen."""
+    levels = np.unique(values[np.isfinite(values)]).size
+    if 1 < levels <= values.size / 2:
+        return True
+    return levels > 1 and any(_together(values, s) > GOES_ALONG and not _same(values, s) for s in settings)
+
+
+def _same(one: Array, other: Array) -> bool:
+    """Whether two columns have the same numbers, a raw and a corrected angle: within `SAME` of the largest."""
+    both = np.isfinite(one) & np.isfinite(other)
+    largest = float(np.max(np.abs(other[both]), initial=0.0))
+    return bool(both.any()) and float(np.median(np.abs(one - other)[both])) < SAME * largest
+
+
+def _together(one: Array, other: Array) -> float:
+    """Size of the correlation of two columns where both are known."""
+    both = np.isfinite(one) & np.isfinite(other)
+    if both.sum() < 3 or not np.ptp(one[both]) or not np.ptp(other[both]):
+        return 0.0
+    return float(abs(np.corrcoef(one[both], other[both])[0, 1]))
+
+
+def by_said_area(one: Proposal, known: Mapping[str, object]) -> Proposal:
+    """A prime as a coefficient of the area that a person, or words that were accepted, say it was divided by."""
+    area = known.get(AREA)
+    if area is None or area == "prime":
+        return one
+    given = one.said
+    if given is None or given.name not in FORCES or not given.primed:
+        return one
+    length = known.get(LENGTH_OF, known.get("scaling.length"))
+    moment = given.name in MOMENTS
+    sizes = f"A={quantity(area, 'area')!r} m^2" + (
+        f" L={OPEN if length is None else repr(quantity(length, 'length'))} m" if moment else ""
+    )
+    counted = re.search(r"\[([^\]]*)\]", one.text)
+    if counted and share(counted[1]) is not None:  # a coefficient has no power of ten of its own
+        return one
+    text = f"{str(given).partition(' [')[0].rstrip(chr(39))} [coefficient {sizes.replace(f'L={OPEN} m', f'L={OPEN}')}]"
+    return replace(one, text=text, why=f"{one.why}, by 1/2 rho U^2 A{' L' * moment}, as said")
+
+
+def _beside_the_body(one: Proposal, other: str, body: str) -> Proposal:
+    """A drag with the other reading that a force of the body beside it makes as likely: X differs by Y sin(beta)."""
+    if not re.match(r"drag\b", one.text) or one.certain or one.note:
+        return one
+    x = one.text.replace("drag", "X", 1)
+    note = f"along the flow, by its name; but {other} is {body} of the body. If this is along the body too: -{x} where x points forward, {x} where aft"
+    return replace(one, why=f"{one.why}; {note}", note=note)
+
+
+def _along_the_body(one: Proposal, column: RawColumn, place: str) -> Proposal:
+    """A resistance as X of the body, reversed where it is above zero, for words over the table say body axes."""
+    if not one.text.removeprefix("se_").startswith("drag") or "coefficient" in one.text or one.certain:
+        return one
+    known = column.values[np.isfinite(column.values)]
+    positive = bool(known.size) and float(np.median(known)) > 0.0
+    error = one.text.startswith("se_")
+    text = one.text.replace("drag", "-X" if positive and not error else "X", 1)
+    note = f"X of the body{', reversed' if positive and not error else ''}: {place}; {one.text} if it is along the flow"
+    return Proposal(text, f"{one.why.partition(', along the flow')[0]}, {note}", note=note)
+
+
+def _repeats(column: RawColumn) -> bool:
+    cells = column.texts or tuple(column.values.tolist())
+    return len(set(cells)) < len(cells)
