@@ -114,7 +114,13 @@ class InputError(CoeflabError):
         *,
         key: str | None = None,
     ) -> InputError:
-        """The same complaint with its place, to be raised by the caller."""
+        """The same complaint with its place, to be raised by the caller.
+
+        Parameters
+        ----------
+        file, line, column, key
+            As of the class.
+        """
         return type(self)(self.found, self.expected, file=file, line=line, column=column, key=key, advice=self.advice)
 
     @property

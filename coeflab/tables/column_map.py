@@ -135,11 +135,11 @@ class ColumnMap:
 _TEN = r"(?:1[eE]|10\s*(?:\^|\*\*)\s*)\(?[+-]?\d{1,2}\)?"
 _SHARE = re.compile(rf"(?:[xX*×·]\s*)?(?P<power>{_TEN})|(?P<percent>%)")
 _SCALED = (  # M' x1000 and M' * 7; M' (x1e3) and M' [x10^-3]; X'E3; 1000 M'; Z1000
-    rf"(?P<name>.*?[^\s,;])[,;]?(?:\s*[*×·⋅]|(?:\s+|(?<=['′’)\]])_?)[xX])\s*(?P<power>{_TEN}|\d[\d.,]*)",
-    rf"(?P<name>.*?\S)\s*[(\[<]\s*(?P<times>[xX*×·⋅])?\s*(?P<power>{_TEN}|100+|%)\s*[)\]>]",
-    r"(?P<name>.*['′’])\s*(?P<power>1?[eE]\d)",
-    rf"(?P<power>{_TEN}|100+)(?:\s*[xX*×·⋅](?![a-z])|_)?\s*(?P<name>[A-Za-z].*)",
-    rf"(?P<name>[XYZKMN])[\s_]*(?P<power>{_TEN}|100+)",
+    re.compile(rf"(?P<name>.*?[^\s,;])[,;]?(?:\s*[*×·⋅]|(?:\s+|(?<=['′’)\]])_?)[xX])\s*(?P<power>{_TEN}|\d[\d.,]*)"),
+    re.compile(rf"(?P<name>.*?\S)\s*[(\[<]\s*(?P<times>[xX*×·⋅])?\s*(?P<power>{_TEN}|100+|%)\s*[)\]>]"),
+    re.compile(r"(?P<name>.*['′’])\s*(?P<power>1?[eE]\d)"),
+    re.compile(rf"(?P<power>{_TEN}|100+)(?:\s*[xX*×·⋅](?![a-z])|_)?\s*(?P<name>[A-Za-z].*)"),
+    re.compile(rf"(?P<name>[XYZKMN])[\s_]*(?P<power>{_TEN}|100+)"),
 )
 _RAISED = str.maketrans("⁻⁺⁰¹²³⁴⁵⁶⁷⁸⁹−", "-+0123456789-")
 
@@ -176,7 +176,7 @@ def counted_in(name: str, unit: str = "") -> tuple[str, str]:
     pure = unit in ("", "-", "1")
     text = _flat(name.strip() if pure else f"{name.strip()} [{unit}]")
     for form in _SCALED:
-        if m := re.fullmatch(form, text):
+        if m := form.fullmatch(text):
             if not re.fullmatch(rf"{_TEN}|1?[eE]\d|100*", m["power"]):
                 return m["name"], m["power"] if m["power"] == "%" else "?"
             power, bracketed = _exponent(m["power"]), form is _SCALED[1]

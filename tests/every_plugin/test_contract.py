@@ -11,8 +11,8 @@ from typing import Any
 
 import pytest
 
+from coeflab.api.listing import options_of
 from coeflab.bodies.readers import BODIES
-from coeflab.cli.formats import options_of
 from coeflab.core.declarations import Declaration, validated
 from coeflab.core.options import described
 from coeflab.core.provenance import works

@@ -41,7 +41,7 @@ def explained(fit: FitResult, others: Sequence[FitResult] = ()) -> Table:
     own = [o.explained() for o in fit.oscillations]
     against = [*own, *beside_steady(fit, others)]
     rows = tuple(_explained(e) for e in against if e.against or np.isfinite(e.by_amplitude))
-    notes = texts_of("oscillations.explained_notes") + (
+    notes = texts_of("oscillations.explained_notes", own=OWN) + (
         texts_of("oscillations.steady") if len(against) > len(own) else ()
     )
     return table_of("oscillations.explained", rows, notes if rows else (), campaign=fit.campaign)
