@@ -140,6 +140,7 @@ def read_table(
     Returns
     -------
     Table
+        A cell that is no number is left out of its row's component: `exclusions` has the row, and `notes` a line.
 
     Raises
     ------

@@ -81,6 +81,8 @@ class InputError(CoeflabError):
 
     Attributes
     ----------
+    found, expected, file, line, column, advice
+        As they were given; ``column`` has the key where there is one.
     others : tuple of InputError
         What else is wrong with the same file; the text lists all.
     example : str

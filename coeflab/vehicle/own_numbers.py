@@ -50,6 +50,10 @@ _TYPED = re.compile(
     rf"(?:(?:\+-|\+/-|\u00b1)\s*(?P<u95>{_NUMBER})\s*(?P<of>%|{_UNIT})\s*)?"
 )
 
+ANOTHER_UNIT = (
+    4.0  # times as far as the ends of the body: a centre of gravity in another unit, refused; nearer ones are warned of
+)
+
 
 @dataclass(frozen=True, slots=True)
 class OwnNumber:
@@ -338,7 +342,7 @@ def typed_file(
     except InputError as why:
         raise InputError(why.found, why.expected, column="--about", advice=why.advice) from None
     result = imported_file(name, body or name, scaling, conditions, np.zeros(3), datum, known, weighed, afloat)
-    for found in map(words, far_centre(result)):
+    for found in (words(f) for f in far_centre(result) if f.statistic > ANOTHER_UNIT * f.threshold):
         raise InputError(f"{shown(cg)}. {found.statement.rstrip('.')}", found.rule, column="--cg", advice=found.advice)
     driven, surfaces = typed_thrusters(thrusters, conditions), typed_surfaces(rudder, stern_planes, bow_planes)
     return result.model_copy(update={"thrusters": driven, "surfaces": surfaces})

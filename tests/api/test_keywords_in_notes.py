@@ -49,7 +49,7 @@ def test_tables_and_checks_speak_keywords_in_python_and_options_in_a_shell() -> 
 
 def test_statements_of_motions_steady_motions_and_vehicles() -> None:
     raw = ("Not used: the table of X. Tables come first with --tables.", "Write `coeflab trim FILE --linear`.")
-    held: Any = SimpleNamespace(statements=raw, remarks=raw)
+    held: Any = SimpleNamespace(statements=raw, remarks=raw, narrowed=())
     trim = object.__new__(cf.Trim)
     object.__setattr__(trim, "point", held)
     for found in (cf.Motion(held).statements, cf.Vehicle(held).remarks, trim.statements):

@@ -46,7 +46,7 @@ def test_a_folder_is_at_most_forty_lines(tmp_path: Path) -> None:
 
 def test_the_list_of_commands_says_what_they_do() -> None:
     listed = " ".join(invoke("--help").output.split())
-    assert "import Make a campaign of a table or a folder of runs" in listed
+    assert "import Make a campaign of a table, several of one folder, or a folder of runs" in listed
     assert "inspect Show a table in SI and FRD, a mesh, or a body" in listed
 
 

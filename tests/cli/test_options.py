@@ -46,7 +46,7 @@ PAIR = ("x", "=1", "nope=x", LONG)
 READ = ("nope/none.csv", "FIFO", "LOOP", "EMPTY", "BINARY", "FOLDER", LONG)
 WRITTEN = ("TAKEN/below", "LOOP", LONG)
 WRONG: dict[str, tuple[str, ...]] = {
-    "FOLDER": WRITTEN, "FILE.csv": WRITTEN, "DENSITY": NUMBER, "SECONDS": (*NUMBER, "-1"), "COUNT": COUNT, "NUMBER": COUNT[:2], "DEGREES": NUMBER,
+    "FOLDER": WRITTEN, "FILE.csv": WRITTEN, "FILE": READ, "FRD|FLU": NAME, "DENSITY": NUMBER, "SECONDS": (*NUMBER, "-1"), "COUNT": COUNT, "NUMBER": COUNT[:2], "DEGREES": NUMBER,
     "TANK.toml": READ, "BODY": READ, "FILE.toml": READ, "LIST.csv": READ, "PARAMS": READ, "FILE.mplstyle": READ, "CAMPAIGN": NAME, "NAME": NAME, "IMPORTER": NAME,
     "UNIT": NAME, "AXES": NAME, "METHOD": NAME, "WALL": NAME, "FORMATS": NAME, "FORMAT": NAME, "TARGET": NAME, "PLANE": NAME, "convex": NAME,
     "measured|computed": NAME, "c|python|latex|octave": NAME, "u,v,r": NAME, "u": NAME, "Yv,Yr,...": NAME, "SYMBOL": NAME, "POINT": NAME,
@@ -113,7 +113,7 @@ def _words(line: str) -> list[str]:
 def with_files(folder: Path, words: list[str]) -> list[str]:
     """The words of a line, with what its capitals stand for."""
     made = {
-        "TABLE": folder / "t.csv", "WORDS": folder / "words.toml", "MAPPING": folder / "mapping.toml", "RUNS": folder / "runs", "LIST": folder / "list.csv", "OUT": folder / "out",
+        "TABLE": folder / "t.csv", "SHEET": folder / "own.csv", "WORDS": folder / "words.toml", "MAPPING": folder / "mapping.toml", "RUNS": folder / "runs", "LIST": folder / "list.csv", "OUT": folder / "out",
         "MESH": folder / "body.stl", "BOXES": folder / "boxes.toml", "TANK": shipped("cfd_data") / "tank" / "spheroid.toml",
         "STUDY": folder / "study" / "plan.toml", "STYLE": folder / "a.mplstyle", "HUUV": shipped("cfd_data") / "huuv" / "huuv.parameters.json",
         "MOTION": CORPUS / "motion.csv", "CAMPAIGN": "suboff_roddy_2", "FOLDER": folder / "empty", "FIFO": folder / "pipe", "LOOP": folder / "loop",
@@ -133,6 +133,7 @@ def place(tmp_path: Path) -> Path:
     folder = tmp_path / "files"
     folder.mkdir()
     (folder / "t.csv").write_text("beta [deg],Y [N],N [N*m]\n-6,33,11\n-3,16,6\n0,0,0\n3,-16,-6\n6,-33,-11\n")
+    (folder / "own.csv").write_text("symbol,value,unit\nYv,-0.03,1\nNv,-0.01,1\n")
     (folder / "mapping.toml").write_text('[columns]\n"Y [N]" = "Y [N]"\n')
     (folder / "words.toml").write_text("")
     (folder / "a.mplstyle").write_text("lines.linewidth: 2\n")

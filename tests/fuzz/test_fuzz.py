@@ -23,6 +23,7 @@ HALVES = (ALL[::2], ALL[1::2])
 # Readers that are reached through those that are fuzzed, or read what this process wrote itself.
 THROUGH = {
     "toml.read_text": "toml", "coded_thrusters.read_angle": "writes code", "actuators.read_limits": "models", "arm_file.read_chain": "arm", "body.read_body": "body", "campaign.read_campaign": "campaign",
+    "coefficient_list.read_coefficient_list": "table",
     "dialect.read_head": "table", "five_dof.read_five_dof": "shipped files", "glide_polar.read_printed": "a list of SYMBOL=NUMBER",
     "huuv.read_huuv": "shipped files", "json.parse_json": "json", "law.read_fossen_link": "models", "law.read_gz_link": "models",
     "law.read_tags": "models", "lift_drag.read_lift_drag": "models", "m_file.read_m_file": "models", "model_files.read_vehicle_file": "models", "model.read_flyingfish": "shipped files", "model.read_huuv": "shipped files",

@@ -77,6 +77,7 @@ def _repeats(settings: Array) -> tuple[Index, Index]:
 
 SHARE, SCATTERS = 0.05, 3.0
 CERTAIN, SINGULAR = 0.995, 1e-6  # below Student's quantile, 1 % on both sides; of the largest singular value
+LEAST_FREEDOM = 5  # about a curve: below, what the curve itself misses of seven smooth readings looks like scatter
 NARROWEST = 0.5  # of the range of the data, in which a law that is to hold over it may be said to hold
 
 
@@ -127,11 +128,12 @@ def certain_miss(scatter: float | None, pairs: int, squares: float, freedom: int
     --------
     >>> [round(certain_miss(1.0, pairs, 0.0, 0, 0.0), 2) for pairs in (1, 2, 5, 20)]
     [63.66, 9.92, 4.03, 3.0]
-    >>> round(certain_miss(1.0, 1, 16.0, 4, 0.0), 2)
-    9.21
+    >>> [round(certain_miss(1.0, 1, 4.0 * n, n, 0.0), 2) for n in (4, 6)]
+    [63.66, 7.41]
     """
     by = [(scatter or 0.0, pairs), (float(np.sqrt(squares / max(freedom, 1))), freedom)]
-    noise = min((float(stdtrit(n, CERTAIN)) * size for size, n in by if n), default=0.0)
+    counted = [(size, n) for (size, n), least in zip(by, (1, LEAST_FREEDOM), strict=True) if n >= least]
+    noise = min((float(stdtrit(n, CERTAIN)) * size for size, n in counted), default=0.0)
     return max(allowed_miss(scatter, largest), noise + SHARE * largest)
 
 

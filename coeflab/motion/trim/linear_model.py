@@ -364,7 +364,7 @@ def linear_model(found: Trim, also: Sequence[str] = (), lags: Mapping[str, float
     )
     return LinearModel(
         found.motion.vehicle.name, states, commands, a, b, found_modes, (*_accuracy(a, b), *_kinks(a, b, states, commands)),
-        (*found.point.doubts(), *found.point.statements), found.state_in_words(),
+        (*found.point.doubts(), *found.point.statements), found.state_in_words,
     )  # fmt: skip
 
 

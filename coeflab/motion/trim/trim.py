@@ -382,6 +382,7 @@ class Trim:
         climb, speed = (self.figures[name][0] or 0.0 for name in (CLIMB, "speed"))
         return abs(climb) <= LEVEL * max(speed, STRAIGHT)
 
+    @property
     def state_in_words(self) -> str:
         """Speed, pitch and climb of the solution; empty of an unsolved one."""
         if not self.solved:
