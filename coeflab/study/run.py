@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from coeflab.core.errors import InputError, ScalingMismatchError, shown
-from coeflab.core.files import stem
+from coeflab.core.files import shipped, stem
 from coeflab.core.machine import one_thread
 from coeflab.core.provenance import InputFile, sha256_of
 from coeflab.fits.joint.rows import joint_name, one_length
@@ -317,10 +317,12 @@ def _body(plan: Plan) -> Body | None:
 
 
 def _bodies(plan: Plan) -> tuple[Body, ...]:
-    """All that the plan names: its own, and the hulls of its parameter files."""
+    """All that the plan names: its own, the hulls of its parameter files, and the shipped ones that were towed."""
     from coeflab.bodies.readers import read_body
 
-    hulls = dict.fromkeys(h for h in (plan.hull, *(g.hull for g in plan.parameter_files)) if h is not None)
+    towed = (shipped("geometry") / t.body for t in plan.tows)
+    named = (plan.hull, *(g.hull for g in plan.parameter_files), *(b for b in towed if b.is_dir()))
+    hulls = dict.fromkeys(h for h in named if h is not None)
     others = (read_body(h / "body.toml" if h.is_dir() else h) for h in hulls)
     return tuple(b for b in (_body(plan), *others) if b is not None)
 

@@ -342,7 +342,7 @@ def typed_file(
     except InputError as why:
         raise InputError(why.found, why.expected, column="--about", advice=why.advice) from None
     result = imported_file(name, body or name, scaling, conditions, np.zeros(3), datum, known, weighed, afloat)
-    for found in (words(f) for f in far_centre(result) if f.statistic > ANOTHER_UNIT * f.threshold):
+    for found in (words(f) for f in far_centre(result) if (f.statistic or 0.0) > ANOTHER_UNIT * (f.threshold or 0.0)):
         raise InputError(f"{shown(cg)}. {found.statement.rstrip('.')}", found.rule, column="--cg", advice=found.advice)
     driven, surfaces = typed_thrusters(thrusters, conditions), typed_surfaces(rudder, stern_planes, bow_planes)
     return result.model_copy(update={"thrusters": driven, "surfaces": surfaces})

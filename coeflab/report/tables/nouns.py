@@ -41,14 +41,14 @@ def window_text(c: Coefficient) -> str:
     return f"{number(low, 3)} .. {number(high, 3)}{unit}"
 
 
-def with_status(c: Coefficient) -> tuple[str, str]:
-    """Value and U95, or the status that says why one of them is none."""
+def with_status(c: Coefficient, marked: bool = True) -> tuple[str, str]:
+    """Value and U95, or the status that says why one of them is none; an assumed symmetry is marked beside U95 where no column has it."""
     if c.value is None:
         return without_value(c), ABSENT
     if c.status is Status.FORM_REJECTED:
         return with_u95(c.value, None)[0], REJECTED
     value, u95 = with_u95(c.value, c.u95)
-    return value, f"{u95}, {_mark(c)}" if c.status is Status.SYMMETRY_ASSUMED else u95
+    return value, f"{u95}, {_mark(c)}" if marked and c.status is Status.SYMMETRY_ASSUMED else u95
 
 
 def without_value(c: Coefficient) -> str:
@@ -70,7 +70,7 @@ def coefficients(several: Sequence[Coefficient], title: str = "Coefficients, pri
     rows = [
         (
             primed(c.symbol),
-            *with_status(c),
+            *with_status(c, marked=not fixed),
             percent(c.u95, c.value),
             *((_mark(c),) if fixed else ()),
             percent(c.parts.random, c.value),
