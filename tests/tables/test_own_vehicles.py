@@ -58,7 +58,15 @@ def test_coefficients_take_the_area_that_all_share(said: str) -> None:
     beta = np.radians(np.arange(-20.0, 21.0, 4.0))
     drag, side, yaw = 0.4 + beta**2, -2.0 * beta, 0.5 * beta
     table = {"beta [deg]": np.degrees(beta), "C_D [-]": drag, "C_S [-]": side, "C_n [-]": yaw}
-    at = {"frame": "FRD", "about": "midship", "density": 1010, "speed": 1.5, "beta": "+", "length": "1.4 m hull", "moment_length": "1.4 m"}
+    at = {
+        "frame": "FRD",
+        "about": "midship",
+        "density": 1010,
+        "speed": 1.5,
+        "beta": "+",
+        "length": "1.4 m hull",
+        "moment_length": "1.4 m",
+    }
     found = cf.read_table(table, columns={"C_S": said, "C_D": "drag", "C_n": "N"}, area="0.03 m^2", **at)
     q = 0.5 * 1010 * 1.5**2 * 0.03
     np.testing.assert_allclose(found.forces["Y"], q * (side * np.cos(beta) - drag * np.sin(beta)), rtol=1e-9, atol=1e-9)
