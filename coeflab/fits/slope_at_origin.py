@@ -427,6 +427,8 @@ def _beside_runs(tables: Sequence[ForceTable], length: float) -> tuple[list[Forc
                 )
                 plane, points, _ = _on_one_side(sweep_rows(table, variable, tables, length), variable, "odd", every)
                 slope = origin_slope.estimate(*points[:3], odd=bool(plane))
+                if slope.design is None:
+                    continue  # too few settings for a curve: nothing to hold runs against
                 for t in (t for t in runs if component in t.forces):
                     at, y = collect_points(sweep_rows(t, variable, (), length), component, length, np.zeros(len(t)))[:2]
                     moving = np.abs(at) > AT_REST

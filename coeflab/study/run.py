@@ -14,6 +14,7 @@ import numpy as np
 
 from coeflab.core.errors import InputError, ScalingMismatchError, shown
 from coeflab.core.files import shipped, stem
+from coeflab.core.finding import Finding
 from coeflab.core.machine import one_thread
 from coeflab.core.provenance import InputFile, sha256_of
 from coeflab.fits.joint.rows import joint_name, one_length
@@ -92,15 +93,22 @@ def conversions(planned: PlannedConversion, plan: Plan, tables: Sequence[ForceTa
         yield Conversion(copy, original)
 
 
-def together(joint: PlannedJoint, plan: Plan) -> list[ForceTable]:
-    """All tables of a joint fit, each once."""
-    read = [settled(t, plan) for planned in joint.tables for t in read_tables(planned)]
+def together(joint: PlannedJoint, plan: Plan) -> tuple[list[ForceTable], frozenset[str], list[Finding]]:
+    """All tables of a joint fit, each once; see `_held_by_bodies`."""
+    read, right, ruled_out = _held_by_bodies([t for planned in joint.tables for t in read_tables(planned)], plan)
     names = [t.name for t in read]
     twice = next((n for n in names if names.count(n) > 1), None)
     if twice is not None:
         raise InputError(f"the table {shown(twice)} twice", "every table once, and campaigns of different names",
                          column="campaigns", advice="A row that counts twice makes every interval too narrow.")  # fmt: skip
-    return read
+    return read, right, ruled_out
+
+
+def _held_by_bodies(tables: Sequence[ForceTable], plan: Plan) -> tuple[list[ForceTable], frozenset[str], list[Finding]]:
+    """`of_bodies` about each campaign's own point, then the plan's point and scaling."""
+    bodies = _bodies(plan) if any(t.by_symmetry for t in tables) else ()
+    read, right, ruled_out = of_bodies(tables, bodies)
+    return [settled(t, plan) for t in read], right, ruled_out
 
 
 Progress = Callable[[str], None]
@@ -189,9 +197,8 @@ def _fits(plan: Plan, progress: Progress) -> tuple[list[ForceTable], list[FitRes
     towed: set[str] = set()
     by_body = frozenset[str]()
     for planned in plan.tables:
-        read = [settled(t, plan) for t in read_tables(planned)]
+        read, right, ruled_out = _held_by_bodies(read_tables(planned), plan)
         progress(f"read {read[0].campaign}: {sum(map(len, read))} rows")
-        read, right, ruled_out = of_bodies(read, _bodies(plan) if any(t.by_symmetry for t in read) else ())
         by_body |= right
         scaling = plan.scaling or read[0].scaling
         is_ours = planned.campaign in ours
@@ -212,11 +219,12 @@ def _fits(plan: Plan, progress: Progress) -> tuple[list[ForceTable], list[FitRes
             progress(f"fitted {read[0].campaign} by {name}")
         tables += read
     for joint in plan.joint:
-        read = together(joint, plan)
+        read, right, ruled_out = together(joint, plan)
+        by_body |= right
         progress(f"read {joint_name(t.campaign for t in read)}: {sum(map(len, read))} rows")
         result, found = fitted(joint.fit, read, plan.scaling or one_length(read), joint.options)
         budgets += found
-        fits.append(result)
+        fits.append(replace(result, findings=(*result.findings, *ruled_out)))
         of_fits.append((joint.fit, read, plan.scaling or one_length(read), joint.options))
         progress(f"fitted {result.campaign} by {joint.fit}")
         tables += [t for t in read if t.name not in {known.name for known in tables}]

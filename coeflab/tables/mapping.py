@@ -32,7 +32,7 @@ from coeflab.tables.column_map import (
 from coeflab.tables.columns import Columns
 from coeflab.tables.force_table import ForceTable
 from coeflab.tables.importers import IMPORTERS
-from coeflab.tables.levels import APART
+from coeflab.tables.levels import levels_of
 from coeflab.tables.raw_table import RawColumn, RawTable
 from coeflab.tables.to_frd import BLANK, SAME_DENSITY, force_table, speed_of_rows
 from coeflab.tables.vocabulary import folded, vocabulary
@@ -44,6 +44,8 @@ ALL = "all"
 NO_FORCE = "no force column"
 MARKS = re.compile(r"[*!?#\u2020\u2021x]{1,3}\)?")  # of a row that somebody doubts
 MOST_NAMED = 20
+PURE = ("", "-", "1")
+FASTEST = 30.0  # Mach number; beyond it a column is none
 INCOMPRESSIBLE = 0.3  # Mach number up to which a prime does not depend on it
 SAME_VISCOSITY = 1e-2  # relative: by less than a degree of temperature
 
@@ -236,7 +238,7 @@ def usable_rows(raw: RawTable, columns: Sequence[Assigned]) -> NDArray[np.int64]
 def at_higher_mach(raw: RawTable, columns: Sequence[Assigned]) -> tuple[str, NDArray[np.bool_]]:
     """The column of a Mach number, where nobody uses it, and the rows above `INCOMPRESSIBLE`, else above its lowest level.
 
-    A prime holds at one Mach number; rows of several in one sweep would give a slope of none of them.
+    A prime holds at one Mach number; rows of several in one sweep would give a slope of none of them. Rows without one, or at zero, stay.
 
     Parameters
     ----------
@@ -244,12 +246,17 @@ def at_higher_mach(raw: RawTable, columns: Sequence[Assigned]) -> tuple[str, NDA
     columns : sequence of Assigned
     """
     used = {one.column.name for one in columns}
-    for one in (c for c in raw.columns if c.name not in used and len(c.values)):
-        mach = np.nan_to_num(one.values)
-        lowest = max(INCOMPRESSIBLE, float(mach.min()) * (1.0 + APART))
-        by_levels = one.name.strip() == "M" and mach.min() > 0.0 and np.unique(mach).size <= len(mach) / 2
-        if np.any(mach > lowest) and (by_levels or folded(one.name) in vocabulary().lists["mach"]):
-            return one.name, mach > lowest
+    for one in (c for c in raw.columns if c.name not in used and c.unit in PURE):
+        known = one.values[np.isfinite(one.values) & (one.values != 0.0)]  # zero: at rest, wind off
+        if not known.size or known.min() < 0.0 or known.max() > FASTEST:
+            continue
+        level = levels_of(known)
+        by_levels = one.name.strip() == "M" and known.size == len(raw) and level.max() < len(raw) / 2
+        if not (by_levels or folded(one.name) in vocabulary().lists["mach"]):
+            continue
+        higher = one.values > max(INCOMPRESSIBLE, float(known[level == 0].max()))
+        if np.any(higher):
+            return one.name, higher
     return "", np.zeros(len(raw), dtype=bool)
 
 

@@ -76,7 +76,7 @@ def read_coefficient_list(path: Path, axes: str, options: Mapping[str, Any] | No
     raw = IMPORTERS.load(name).raw(path, dict(options or {}))  # type: ignore[misc]  # has one, see above
     left: list[str] = []
     numbers, complaints = [], []
-    for cell in _by_columns(raw) or _by_rows(raw, left):
+    for cell in _by_columns(raw, left) or _by_rows(raw, left):
         try:
             numbers.append(_turned(_number(cell), frame))
         except InputError as why:
@@ -114,12 +114,20 @@ def _symbol(text: str) -> str:
     return f"{name}'" if name and is_prime else name
 
 
-def _by_columns(raw: RawTable) -> list[_Cell]:
+def _by_columns(raw: RawTable, left: list[str]) -> list[_Cell]:
     """A column a symbol, over one row of numbers; empty where rows are symbols."""
     named = [c for c in raw.columns if not c.is_text and _symbol(c.name)]
     if len(raw) != 1 or not named:
         return []
+    _leave([c.name for c in raw.columns if not any(c is one for one in named)], left)
     return [_Cell(_symbol(c.name), float(c.values[0]), c.unit, np.nan, _line(raw, 0)) for c in named]
+
+
+def _leave(others: Sequence[str], left: list[str]) -> None:
+    """Name columns that are not taken."""
+    if others:
+        more = f" and {len(others) - MOST} more" * (len(others) > MOST)
+        left.append(f"columns {', '.join(others[:MOST])}{more}")
 
 
 def _by_rows(raw: RawTable, left: list[str]) -> Iterator[_Cell]:
@@ -137,30 +145,56 @@ def _by_rows(raw: RawTable, left: list[str]) -> Iterator[_Cell]:
     for row, text in enumerate(symbols.texts):
         symbol, value = _symbol(text), float(values.values[row])
         if symbol and np.isfinite(value):
+            line = _line(raw, row)
+            own = "" if units is None else units.texts[row].strip() if units.is_text else f"{units.values[row]:g}"
             unit = (
-                of_all
-                if of_all or units is None
-                else (units.texts[row].strip() if units.is_text else f"{units.values[row]:g}")
+                _one_unit(of_all, "" if units is not None and _word(units.name) == "unit_si" else own, raw, line) or own
             )
-            u95 = np.nan if halves is None else float(halves.values[row])
+            u95 = np.nan if halves is None else _half(float(halves.values[row]), value, halves.unit, unit, raw, line)
             yield _Cell(symbol, value, unit, u95, _line(raw, row))
         elif text.strip():
             left.append(f"{text.strip()} (line {_line(raw, row)}, no {'number' if symbol else 'derivative'})")
     used = [c for c in (symbols, values, units, halves) if c is not None]
-    others = [c.name for c in raw.columns if not any(c is one for one in used)]
-    if others:
-        more = f" and {len(others) - MOST} more" * (len(others) > MOST)
-        left.append(f"columns {', '.join(others[:MOST])}{more}")
+    _leave([c.name for c in raw.columns if not any(c is one for one in used)], left)
+
+
+def _one_unit(of_all: str, own: str, raw: RawTable, line: int) -> str:
+    """The unit of a row, of the whole column or its own, where they do not contradict each other; empty where the column has none."""
+    if not of_all or not own:
+        return of_all
+    pure = [_word(u) in PRIMES for u in (of_all, own)]
+    if _word(of_all) in SI and not pure[1]:
+        return own
+    if pure[0] != pure[1] or (not pure[0] and own != of_all):
+        raise InputError(
+            f"the unit {shown(own)} beside values in {shown(of_all)}", "one of them", file=raw.path, line=line
+        )
+    return of_all
+
+
+def _half(half: float, value: float, its: str, unit: str, raw: RawTable, line: int) -> float:
+    """A half-width in the unit of its value."""
+    if its == "%":
+        return half * abs(value) / 100.0
+    if its not in ("", "-", unit):
+        raise InputError(
+            f"U95 in {shown(its)} beside {shown(unit or 'no unit')}",
+            "the unit of the value, or %",
+            file=raw.path,
+            line=line,
+        )
+    return half
 
 
 def _values(raw: RawTable, others: Sequence[RawColumn | None]) -> RawColumn:
     """The one column of values."""
     found = [c for c in raw.columns if not any(c is one for one in others) and np.any(np.isfinite(c.values))]
-    named = [c for c in found if _word(c.name) in VALUES] or found
+    named = [c for c in found if _word(c.name) in VALUES]
     chosen = [c for c in named if _word(c.name) == "value"] or named
     if len(chosen) != 1:
+        seen = chosen or found
         raise InputError(
-            f"{'columns of numbers ' + listed([shown(c.name) for c in chosen]) if chosen else 'no column of numbers'}",
+            f"{'columns of numbers ' + listed([shown(c.name) for c in seen]) if seen else 'no column of numbers'}",
             f"one of values, named {VALUES[0]}, and {HALVES[0]} beside it", file=raw.path, line=raw.header_line or None,
         )  # fmt: skip
     return chosen[0]

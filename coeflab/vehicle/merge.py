@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
@@ -24,6 +24,7 @@ from coeflab.vehicle.law_at_points import caps, held_ranges, law_at_points
 from coeflab.vehicle.matching import by_plain_names, plain_name, spelled_as, sums_in_words
 from coeflab.vehicle.parameter_file import SCHEMA_VERSION, ParameterFile
 from coeflab.vehicle.parameter_parts import ParameterCovariance
+from coeflab.vehicle.sources import Moved, acts_in
 
 if TYPE_CHECKING:
     from coeflab.law.scaling import Scaling
@@ -140,6 +141,7 @@ def merged(
         raise input_error("vehicle.nothing_measured", has=has, name=other.name)
     slopes = {plain_name(s) for s, i in taken.items() if theirs.coefficients[i].law != "rest"} - {"X0"}
     curved = {_place(s) for s in taken if not (alone and s in ours)} - {None}
+    spoken_of = [acts_in(m) for m in other.models]
     entries: list[Entry] = []
     replaced = []
     for i, c in enumerate(ours.coefficients):
@@ -147,7 +149,11 @@ def merged(
             j = taken[c.symbol]
             entries.append((theirs.coefficients[j], 1, j))
             replaced.append(Replaced(primed(c.symbol), c, theirs.coefficients[j]))
-        elif _place(c.symbol) in curved or (c.law != "rest" and plain_name(c.symbol) in slopes):
+        elif (
+            _place(c.symbol) in curved
+            or (c.law != "rest" and plain_name(c.symbol) in slopes)
+            or (c.status is Status.ESTIMATE and _in_tables(c.symbol, spoken_of))
+        ):
             replaced.append(Replaced(primed(c.symbol), c, None))
         else:
             entries.append((c, 0, i))
@@ -315,6 +321,12 @@ def _place(symbol: str) -> tuple[str, frozenset[str]] | None:
     return (d.component, frozenset(d.factors)) if len(d.factors) > 1 else None
 
 
+def _in_tables(symbol: str, tables: Sequence[Mapping[str, Moved]]) -> bool:
+    """Whether fitted tables have the force of a term: those of its component over all its motions, ahead at the speed."""
+    d = derivative(symbol)
+    return any(d.component in t and set(d.factors) <= {"u", *t[d.component]} for t in tables)
+
+
 def _written(
     base: ParameterFile, other: ParameterFile, chosen: Sequence[Coefficient], covariance: np.ndarray,
     replaced: Sequence[Replaced], name: str,
@@ -330,6 +342,7 @@ def _written(
         rows.append(replace(c, symbol=primed(c.symbol), value_si=si, unit_si=bare.unit, potential=potential))
     taken = [r.symbol for r in replaced if r.after is not None]
     taken += [f"the table of {m.response}" for m in other.models]
+    new = {(m.response, m.names) for m in other.models}
     notes = [f"from {other.name}: {', '.join(taken)}"]
     for what, estimated in (("estimates", True), ("numbers that are no estimates", False)):
         gone = [
@@ -357,7 +370,7 @@ def _written(
         "hydrostatics": base.hydrostatics or other.hydrostatics,
         "thrusters": base.thrusters or other.thrusters,
         "surfaces": base.surfaces or other.surfaces,
-        "models": (*base.models, *other.models),
+        "models": (*(m for m in base.models if (m.response, m.names) not in new), *other.models),
         "covered": (*base.covered, *other.covered),
         "measured": (*base.measured, *(other.measured if same else ())),
         "law_holds": (*base.law_holds, *(other.law_holds if same else ())),

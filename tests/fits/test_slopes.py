@@ -110,3 +110,12 @@ def test_no_stall_is_seen_in_scatter(shape: object, noise: float, n: int) -> Non
 
 def test_nothing_has_no_stall() -> None:
     assert slopes.before_stall(np.empty(0), np.empty(0)) == (-np.inf, np.inf)
+
+
+@pytest.mark.parametrize("wrong", [{4: 4.0}, {3: 10.2}])
+def test_one_bad_row_is_no_stall(wrong: dict[int, float]) -> None:
+    force = np.array([0.0, 2.0, 4.0, 6.0, 8.0, 10.0, 12.0])
+    for row, value in wrong.items():
+        force[row] = value
+    assert slopes.before_stall(2.0 * np.arange(7.0), -force) == (-np.inf, np.inf)
+    assert slopes.before_stall(2.0 * np.arange(7.0), -np.array([0.0, 2.0, 4.0, 6.0, 5.0, 4.5, 4.8])) == (-np.inf, 6.0)

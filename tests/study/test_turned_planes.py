@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shutil
 from dataclasses import replace
 from pathlib import Path
 
@@ -10,6 +11,7 @@ import pytest
 
 from coeflab.bodies.images import quarter_turned
 from coeflab.bodies.readers import read_body
+from coeflab.core.files import shipped
 from coeflab.core.finding import Severity
 from coeflab.law.coefficient import Status
 from coeflab.report.tables.nouns import with_status
@@ -34,8 +36,8 @@ def test_about_a_point_off_its_axis_no_body_has_it() -> None:
     assert quarter_turned(read_body(GEOMETRY / "tow_spheroid" / "body.toml"), np.array([0.0, 0.0, 0.05])) is False
 
 
-def carried_out(folder: Path, body: str = "") -> Study:
-    named = f'[body]\npath = "{body}"\n' if body else ""
+def carried_out(folder: Path, body: str = "", about: str = "") -> Study:
+    named = about + (f'[body]\npath = "{body}"\n' if body else "")
     plan = folder / "plan.toml"
     plan.write_text(
         f'[study]\nname = "turned"\n{named}[[table]]\ncampaign = "tank_spheroid"\nfits = ["slope_at_origin"]\n'
@@ -70,3 +72,25 @@ def test_a_body_that_has_it_not_withdraws_the_rows(tmp_path: Path) -> None:
     assert [t.name.rpartition("/")[2] for t in study.tables] == ["drift.csv"]
     (found,) = (c for c in symmetry.check(study) if "quarter of a turn" in str(c.statistic))
     assert found.severity is Severity.WARN
+
+
+def test_a_point_of_the_plan_off_the_axis_withdraws_nothing(tmp_path: Path) -> None:
+    """Rows were turned about the campaign's own point."""
+    study = carried_out(tmp_path, "tow_spheroid", 'datum = "centre"\nreference_point = [0.0, 0.0, 0.02]\n')
+    (fit,) = study.fits
+    assert fit.coefficients["Zw"].status is fit.coefficients["Yv"].status
+
+
+def test_a_joint_fit_has_no_rows_that_the_body_rules_out(tmp_path: Path) -> None:
+    text = (GEOMETRY / "finned_spheroid" / "body.toml").read_text().replace('"finned_spheroid"', '"tow_spheroid"')
+    (tmp_path / "body.toml").write_text(text)
+    shutil.copytree(shipped("cfd_data") / "tank_spheroid", tmp_path / "again")
+    campaign = tmp_path / "again" / "campaign.toml"
+    campaign.write_text(campaign.read_text().replace('name = "tank_spheroid"', 'name = "again"'))
+    (tmp_path / "plan.toml").write_text(
+        '[study]\nname = "turned"\n[body]\npath = "body.toml"\n[[joint]]\nfit = "manoeuvring_model"\n'
+        'campaigns = ["tank_spheroid", "again"]\noptions = { terms = ["Yv", "Yv|v|"] }\n'
+    )
+    study = run(replace(read_plan(tmp_path / "plan.toml"), exports=(), manoeuvres=()))
+    assert {t.name.rpartition("/")[2] for t in study.tables} == {"drift.csv"}
+    assert "symmetry.body" in [f.code for f in study.fits[0].findings]

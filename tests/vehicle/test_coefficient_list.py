@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
+from typing import Any
 
+import numpy as np
 import pytest
 
 from coeflab.core.errors import InputError
@@ -97,3 +100,30 @@ def test_a_spreadsheet_becomes_a_parameter_file_with_its_hash_and_what_is_left(t
     written = beside_sheet(file, found, book)
     assert [c.value for c in written.coefficients] == pytest.approx([-25.5 / 4687.5, -8.0 / 29296.875])
     assert written.provenance.inputs[0].name == "book.xlsx"
+
+
+@pytest.mark.parametrize(
+    ("text", "found"),
+    [
+        ("symbol,value,unit,U95 [%]\nYv,-3500,N/(m/s),5\n", (-3500.0, 175.0)),
+        ("symbol,SI,unit\nNr,-30,N*m/(deg/s)\n", (-30.0 * 180.0 / np.pi, None)),
+        ("symbol,value,page\nYv',-0.0300±0.0020,12\n", 'columns of numbers "page"'),
+        ("symbol,1000 x value\nYv',-30\n", 'columns of numbers "1000 x value"'),
+        ("symbol,value [-],unit\nYv,-0.03,N/(m/s)\n", 'the unit "N/(m/s)" beside values in "-"'),
+        ("symbol,value,unit,U95 [kN/(m/s)]\nYv,-3500,N/(m/s),5\n", "U95 in"),
+    ],
+)
+def test_units_of_a_sheet_do_not_contradict_each_other(tmp_path: Path, text: str, found: Any) -> None:
+    (tmp_path / "own.csv").write_text(text, encoding="utf-8")
+    if isinstance(found, str):
+        with pytest.raises(InputError, match=re.escape(found)):
+            read_coefficient_list(tmp_path / "own.csv", "FRD")
+        return
+    number = read_coefficient_list(tmp_path / "own.csv", "FRD").numbers[0]
+    assert number.value == pytest.approx(found[0])
+    assert number.u95 == (None if found[1] is None else pytest.approx(found[1]))
+
+
+def test_columns_beside_symbols_over_one_row_are_named(tmp_path: Path) -> None:
+    (tmp_path / "own.csv").write_text("Yv',Yv' U95,Nv',comment\n-0.03,0.002,-0.01,hello\n", encoding="utf-8")
+    assert read_coefficient_list(tmp_path / "own.csv", "FRD").left == ("columns Yv' U95, comment",)

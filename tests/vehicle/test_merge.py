@@ -230,3 +230,18 @@ def test_an_estimate_stays_where_it_brings_the_law_to_points_beyond_the_slope_an
     assert np.degrees(high) >= 8.0
     held = law_at_points(done.file.measured, done.file.law_holds, full_force(done.file), done.file.scaling.length)
     assert not [p.missed for p in held if p.component == "Y" and p.missed]
+
+
+def test_an_estimate_goes_where_a_fitted_table_has_its_force() -> None:
+    """And the same tables again take the place of themselves."""
+    base = cf.vehicle("remus100", mass=30.5, centre_of_gravity=(-0.611, 0.0, 0.02)).file
+    nothing = {"mass": None, "added_mass": None, "hydrostatics": None, "thrusters": ()}
+    law = hybrid(rates={}).model_copy(
+        update={**nothing, "scaling": base.scaling, "reference_point": base.reference_point}
+    )
+    done = merged(base, law)
+    assert {"X0'", "Yv'", "Yv|v|'", "Nv'"} <= {r.symbol for r in done.replaced}
+    at = np.array([[1.1, 0.2, 0.0, 0.0, 0.0, 0.0]])
+    ratio = base.conditions.density / law.conditions.density
+    np.testing.assert_allclose(full_force(done.parameters)(at)[0, :2], ratio * full_force(law)(at)[0, :2], rtol=5e-3)
+    assert len(merged(done.parameters, law).parameters.models) == len(law.models)

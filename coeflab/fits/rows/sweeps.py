@@ -123,7 +123,7 @@ def collect_points(
 
 
 def not_belonging(table: ForceTable, component: str, sweeps: Sequence[Sweep], length: float) -> NDArray[np.bool_]:
-    """Rows of a table whose force a sweep over it left out because it does not fit the others, shape (n,)."""
+    """Rows of a table whose force a sweep over it left out, past stall or because it does not fit the others, shape (n,)."""
     out = np.zeros(len(table), dtype=bool)
     labels = np.array(table.labels, dtype=object)
     for s in (s for s in sweeps if (s.table, s.component) == (table.name, component)):
@@ -133,6 +133,8 @@ def not_belonging(table: ForceTable, component: str, sweeps: Sequence[Sweep], le
             here = np.flatnonzero((labels == s.labels[i]) & np.isclose(x, s.x[i], rtol=SAME_SETTING))
             there = np.flatnonzero((of_sweep == s.labels[i]) & np.isclose(s.x, s.x[i], rtol=SAME_SETTING))
             out[here[there == i] if len(here) == len(there) else here] = True
+        stalled = [p.x for p in s.left_out if p.reason == STALLED]
+        out |= np.isclose(x[:, None], np.array(stalled)[None, :], rtol=SAME_SETTING).any(axis=1)
     return out
 
 

@@ -64,7 +64,7 @@ EVEN = (
 )
 SAME_LEVEL = 0.02
 # Of a peak; standard deviations, counted from `DENSE` settings of a side on, as fewer are farther apart than scatter; settings up to it.
-FALLEN, SCATTERS, DENSE, FEWEST_BEFORE = 0.1, 7.0, 6, 3
+FALLEN, SCATTERS, DENSE, FEWEST_BEFORE = 0.1, 7.0, 7, 3
 
 
 def design(terms: tuple[str, ...], x: Array) -> Array:
@@ -182,6 +182,7 @@ def before_stall(x: Array, y: Array) -> tuple[float, float]:
         noise = SCATTERS * 1.4826 * float(np.median(np.abs(bent))) / np.sqrt(6.0) if len(size) >= DENSE else 0.0
         highest = np.maximum.accumulate(size)
         fallen = (highest - size > np.maximum(FALLEN * highest, noise)) & (highest > size.max(initial=0.0) / 3.0)
+        fallen &= np.append(fallen[1:], True)  # one low setting before higher ones is a bad row, no stall
         peak = int(np.argmax(size[: int(np.argmax(fallen)) + 1])) if np.any(fallen) else 0
         ends.append(side * (float(at[peak]) if peak >= FEWEST_BEFORE - 1 else np.inf))
     return ends[0], ends[1]

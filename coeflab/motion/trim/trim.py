@@ -389,7 +389,11 @@ class Trim:
             return ""
         pitch = next(u for u in self.point.unknowns if u.name == "pitch")
         climb = "depth kept" if self.depth_is_kept else f"climb {number(self.figures[CLIMB][0], 4)} m/s, depth not kept"
-        ask = f"; {CLIMB} = 0 asks for it" if pitch.low < pitch.high and not self.depth_is_kept else ""
+        ask = (
+            f"; {CLIMB} = 0 asks for it"
+            if self.motion.climb is None and pitch.low < pitch.high and not self.depth_is_kept
+            else ""
+        )
         return f"steady motion at u = {number(self.point.values['u'], 4)} m/s: pitch {pitch.shown(self.point.values['pitch'], 4)}, {climb}{ask}"
 
     def figure_table(self) -> Table:

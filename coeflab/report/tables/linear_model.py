@@ -92,7 +92,11 @@ def schedule_table(speeds: Sequence[float], trims: Sequence[Trim], models: Seque
         for speed, found in zip(speeds, trims, strict=True)
         for words in (*found.point.doubts(), *found.point.statements)
     )
-    if rising := [number(s) for s, t in zip(speeds, trims, strict=True) if t.solved and not t.depth_is_kept]:
+    if rising := [
+        number(s)
+        for s, t in zip(speeds, trims, strict=True)
+        if t.solved and not t.depth_is_kept and t.motion.climb is None
+    ]:
         told["Depth is not kept. climb = 0 (--climb 0) asks for a motion that keeps it."] = rising
     notes = tuple(w if len(at) == len(speeds) else f"At {listed(at)} m/s: {w}" for w, at in told.items())
     headers = (
