@@ -64,7 +64,7 @@ EVEN = (
 )
 SAME_LEVEL = 0.02
 # Of a peak; standard deviations, counted from `DENSE` settings of a side on, as fewer are farther apart than scatter; settings up to it.
-FALLEN, SCATTERS, DENSE, FEWEST_BEFORE = 0.1, 7.0, 7, 3
+FALLEN, SCATTERS, DENSE, FEWEST_BEFORE = 0.1, 7.0, 6, 3
 
 
 def design(terms: tuple[str, ...], x: Array) -> Array:
