@@ -5,7 +5,7 @@ What a plan names, read: tables about one reference point, bodies.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence, Set
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -106,8 +106,8 @@ def together(joint: PlannedJoint, plan: Plan) -> tuple[list[ForceTable], frozens
 
 def _held_by_bodies(tables: Sequence[ForceTable], plan: Plan) -> tuple[list[ForceTable], frozenset[str], list[Finding]]:
     """`of_bodies` about each campaign's own point, then the plan's point and scaling."""
-    bodies = _bodies(plan) if any(t.by_symmetry for t in tables) else ()
-    read, right, ruled_out = of_bodies(tables, bodies)
+    turned = {t.body for t in tables if t.by_symmetry}
+    read, right, ruled_out = of_bodies(tables, _bodies(plan, turned) if turned else ())
     return [settled(t, plan) for t in read], right, ruled_out
 
 
@@ -324,13 +324,14 @@ def _body(plan: Plan) -> Body | None:
     return read_body(plan.body / "body.toml" if plan.body.is_dir() else plan.body)
 
 
-def _bodies(plan: Plan) -> tuple[Body, ...]:
-    """All that the plan names: its own, the hulls of its parameter files, and the shipped ones that were towed."""
+def _bodies(plan: Plan, wanted: Set[str]) -> tuple[Body, ...]:
+    """Those that the plan names: its own, hulls of its parameter files and what was towed; of the shipped ones, which are called as their folders, the wanted."""
     from coeflab.bodies.readers import read_body
 
-    towed = (shipped("geometry") / t.body for t in plan.tows)
+    geometry = shipped("geometry")
+    towed = (geometry / t.body for t in plan.tows)
     named = (plan.hull, *(g.hull for g in plan.parameter_files), *(b for b in towed if b.is_dir()))
-    hulls = dict.fromkeys(h for h in named if h is not None)
+    hulls = dict.fromkeys(h for h in named if h is not None and (h.parent != geometry or h.name in wanted))
     others = (read_body(h / "body.toml" if h.is_dir() else h) for h in hulls)
     return tuple(b for b in (_body(plan), *others) if b is not None)
 
