@@ -537,9 +537,10 @@ def _drawn(parameters: ParameterFile, body: Vehicle, at: Sequence[int], speed: A
     units = [parameters.scaling.unit(s, parameters.conditions.density, parameters.conditions.speed) for s in symbols]
     forces = (draws * units / parameters.conditions.speed).reshape(-1, 2, 2)  # by speed ahead
     rates = np.linalg.inv(body.effective_mass[np.ix_(at, at)]) @ forces
-    moved = np.broadcast_to(matrices, (DRAWN, *matrices.shape)).copy()
-    moved[:, :, :2, :2] += speed[:, None, None] * rates[:, None]
-    return first_zero(speed, np.linalg.eigvals(moved).real.max(axis=-1))
+    rest = ((0, 0), (0, matrices.shape[1] - 2), (0, matrices.shape[2] - 2))
+    rates = np.pad(rates, rest)
+    growth = [np.linalg.eigvals(m + u * rates).real.max(axis=-1) for m, u in zip(matrices, speed, strict=True)]
+    return first_zero(speed, np.stack(growth, axis=1))
 
 
 def first_zero(at: Array, values: Array) -> Array:

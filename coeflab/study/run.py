@@ -325,13 +325,12 @@ def _body(plan: Plan) -> Body | None:
 
 
 def _bodies(plan: Plan, wanted: Set[str]) -> tuple[Body, ...]:
-    """Those that the plan names: its own, hulls of its parameter files and what was towed; of the shipped ones, which are called as their folders, the wanted."""
+    """The plan's own and the hulls of its parameter files; of the shipped ones, which are called as their folders, the wanted."""
     from coeflab.bodies.readers import read_body
 
     geometry = shipped("geometry")
-    towed = (geometry / t.body for t in plan.tows)
-    named = (plan.hull, *(g.hull for g in plan.parameter_files), *(b for b in towed if b.is_dir()))
-    hulls = dict.fromkeys(h for h in named if h is not None and (h.parent != geometry or h.name in wanted))
+    named = dict.fromkeys(h for h in (plan.hull, *(g.hull for g in plan.parameter_files)) if h is not None)
+    hulls = (h for h in named if h.parent != geometry or h.name in wanted)
     others = (read_body(h / "body.toml" if h.is_dir() else h) for h in hulls)
     return tuple(b for b in (_body(plan), *others) if b is not None)
 

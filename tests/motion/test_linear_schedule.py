@@ -184,7 +184,7 @@ def test_a_climb_that_is_asked_for_is_an_equation_and_each_model_names_its_stead
     assert words.startswith("steady motion at u = 1.500 m/s: pitch 2.865 deg, climb ")
     assert words.endswith("depth not kept")  # its pitch is given: no climb could be asked for
     assert linear_model(level).state.endswith(", depth kept")
-    assert "climb = 0 asks for it" in linear_model(rising).state
+    assert linear_model(rising).state.endswith("climb 0.1000 m/s, depth not kept")
     assert linear_model(level).state in json.loads(content([linear_model(level)], ".json"))["statements"]
 
 

@@ -31,7 +31,7 @@ from coeflab.bodies.pieces import Control, Piece, hull_piece
 from coeflab.bodies.profiles import FOOT, LARGEST_RADIUS, MIDDLE_END, suboff_meridian, suboff_profile
 from coeflab.core.declarations import Declaration, Flag, declared
 from coeflab.core.text.toml import read_toml
-from coeflab.core.types import Array, brief, locked
+from coeflab.core.types import Array, brief, locked, remembered
 
 Hull = Callable[[Array], tuple[Array, Array]]
 
@@ -259,6 +259,12 @@ def _whole(with_sail: bool, with_planes: bool, hull_panels: int) -> TriangleMesh
         solids.append(_sail_of(_counts(SAIL, fine)))
     if with_planes:
         solids += [_plane_of(turn, _counts(PLANE, fine)) for turn in range(4)]
+    return _joined(tuple(solids))
+
+
+@remembered(1)
+def _joined(solids: tuple[TriangleMesh, ...]) -> TriangleMesh:
+    """Their union; many numbers of panels one after the other give the same solids."""
     return united(solids)
 
 
