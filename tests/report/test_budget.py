@@ -7,6 +7,8 @@ from xml.etree import ElementTree as ET
 import numpy as np
 import pytest
 
+from coeflab.fits.uncertainty.budget import MODEL
+from coeflab.fits.uncertainty.grid_studies import VariantStudy
 from coeflab.law.coefficient import COVERS
 from coeflab.report.figures.palette import COLOURS
 from coeflab.report.sections.campaign import tornado_figure
@@ -74,6 +76,9 @@ def test_u95_covers_what_entered_and_names_what_entered_only_some():
     assert results.covers(in_some) == f"{COVERS}, declared inputs, grid (only Yv')"
     sway = in_some.fits[0].coefficients["Yv"]
     assert results.covers(in_some, [sway]) == f"{COVERS}, declared inputs, grid"
+    models = VariantStudy(MODEL, "drift", "Y", "v = 0.1 m/s", ("v",), -12.0, (("kEpsilon", -13.0),), 1.2, "")
+    beside = replace(declared, budgets=tuple(replace(b, studies=(models,)) for b in found))
+    assert results.covers(beside) == f"{COVERS}, declared inputs"  # no part of U95: its spread stands beside
 
 
 def test_the_core_names_the_rows_that_no_fit_uses_and_the_coefficients_without_a_grid_part():
