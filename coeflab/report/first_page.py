@@ -105,12 +105,14 @@ def _columns(study: Study) -> Beside:
     ours = [r for r in study.references if r.relation is Relation.RE_ANALYSIS and set(r.campaigns) & set(campaigns)]
     bodies = [c.body for c in study.coefficients if c.symbol in study.plan.wanted and c.value is not None]
     body = next((b for b in (*(r.body for r in quoted), *bodies) if b), next(iter(campaigns.values()), ""))
-    first = [r for r in quoted if r.body == body] or [
-        r for r in ours if any(campaigns.get(c) == body for c in r.campaigns)
-    ]
+    of_body = [r for r in quoted if r.body == body]
+    first = [r for r in ours if any(campaigns.get(c) == body for c in r.campaigns)]
+    judged = {c.coefficient.symbol for c in study.comparisons if c.passed is not None}
+    if any(r.printed(symbol) is not None for r in of_body for symbol in judged):
+        first = []  # the quoted columns print what the re-analyses are judged by
     others = [r for r in study.references if r.relation is Relation.CROSS_BODY]
     fit = next((f for f in study.fits if f.body == body), None)
-    return Beside(body, tuple([*first, *others][:MOST_COLUMNS]), fit.coefficients if fit else None)
+    return Beside(body, tuple([*first, *of_body, *others][:MOST_COLUMNS]), fit.coefficients if fit else None)
 
 
 def _wanted(study: Study, body: str) -> tuple[str, ...]:

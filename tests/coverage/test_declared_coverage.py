@@ -12,7 +12,7 @@ from tests.coverage.declared_campaigns import CASES, NOISE, TABLE, campaigns, re
 from tests.coverage.stability_campaigns import TABLE as OF_HULLS
 
 GUARDED = ("sign", "beside", "two runs")
-PAGE = (Path(__file__).parents[2] / "docs" / "slope_at_origin.md").read_text()
+PAGE = (Path(__file__).parents[2] / "docs" / "calibration.md").read_text()
 
 
 def rows(path: Path) -> list[dict[str, str]]:

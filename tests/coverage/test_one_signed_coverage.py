@@ -37,7 +37,7 @@ BELOW_90 = {
     ("late bend: opposed", "uneven"): "0.03",
     ("late bend: opposed", "one-sided"): "0.03",
 }
-PAGE = (TABLE.parents[2] / "docs" / "slope_at_origin.md").read_text()
+PAGE = (TABLE.parents[2] / "docs" / "calibration.md").read_text()
 NAMED = [
     *(("saturating, along", d, n) for d in DESIGNS for n in (0.01, 0.003)),
     *(("slow power, along", d, n) for d in DESIGNS for n in (0.01, 0.001)),

@@ -91,7 +91,7 @@ def test_what_is_printed_covers_as_the_ends_of_the_mixture_do(rows: list[dict[st
 
 def test_no_interval_is_shorter_than_the_page_says() -> None:
     """Pratt's bound: 2 (p z + density(z)) standard deviations, z the quantile of p, of least squares with all terms."""
-    text = (TABLE.parents[2] / "docs" / "slope_at_origin.md").read_text()
+    text = (TABLE.parents[2] / "docs" / "calibration.md").read_text()
 
     def deviation(x: Array, columns: list[Array]) -> float:
         r = np.linalg.qr(np.stack(columns, 1), mode="r")

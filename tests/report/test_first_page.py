@@ -141,6 +141,16 @@ def test_only_a_re_analysis_gives_a_verdict():
     assert "differ" not in made.sentence
 
 
+def test_a_quoted_column_of_other_derivatives_hides_no_verdict():
+    """An arm test that is quoted for Nr' alone stood before the report that Nv' differs from, and the answer was silent."""
+    arm = reference(Relation.QUOTED, {"Nr": "-0.0044"}, "arm test")
+    made = answer(compared(arm, REPORT), drawn=False)
+    assert (made.compared, made.columns) == (REPORT.name, (REPORT.name, "arm test"))
+    assert [r.agrees for r in made.rows if r.agrees is not None] == [
+        r.agrees for r in answer(compared(REPORT), drawn=False).rows if r.agrees is not None
+    ]
+
+
 def test_no_verdict_on_a_value_that_was_moved_for_it():
     """A comparison about the point of its source is not one of the value that the row shows."""
     away = replace(REPORT, reference_point=np.array([-0.5, 0.0, 0.0]))

@@ -125,7 +125,10 @@ def covered(
     entered = collected(
         (name, b)
         for b in budgets
-        for name, has in (("declared inputs", b.inputs), *((n, b.part(n)) for n in ("grid", *(s.name for s in b.studies))))
+        for name, has in (
+            ("declared inputs", b.inputs),
+            *((n, b.part(n)) for n in ("grid", *(s.name for s in b.studies))),
+        )
         if has
     )
     several = len({campaign for campaign, _ in wanted}) > 1
