@@ -41,5 +41,7 @@ def _findings(name: str, study: Study) -> tuple[Check, ...]:
 
 def _in_their_words(c: Check) -> Check:
     """Another package's finding: nothing in its texts is taken for a symbol."""
-    texts = ("name", "subject", "statistic", "rule", "comment")
-    return replace(c, **{t: Verbatim(getattr(c, t)) for t in texts})
+    return replace(
+        c, name=Verbatim(c.name), subject=Verbatim(c.subject), statistic=Verbatim(c.statistic), rule=Verbatim(c.rule),
+        comment=Verbatim(c.comment),
+    )  # fmt: skip
