@@ -75,8 +75,8 @@ def document(study: Study, *, full: bool = True, review: bool = False) -> Docume
     with keeping(verbatim):
         result = _document(study, full and not review)
         if review:
-            kept = core(result)
-            result = replace(kept, sections=(*kept.sections, *review_sections(study)))
+            core_result = core(result)
+            result = replace(core_result, sections=(*core_result.sections, *review_sections(study)))
         elif not full:
             result = core(result, tables.sources_of_numbers(study))
         return replace(result, verbatim=verbatim, bench=bench_of(study))
@@ -84,7 +84,9 @@ def document(study: Study, *, full: bool = True, review: bool = False) -> Docume
 
 def core(document: Document, sources: Collection[str] | None = None) -> Document:
     """A report without what belongs to the appendix, and of the works those named, else all; no paragraph, note or caption is longer than three lines."""
-    sections = tuple(_short(s, document.digest) if s.anchor == "reproduce" else s for s in _kept(document.sections))
+    sections = tuple(
+        _short(s, document.digest) if s.anchor == "reproduce" else s for s in _core_sections(document.sections)
+    )
     known = {s.anchor for s in every(sections)}
     answer = document.answer
     if answer is not None:
@@ -150,7 +152,7 @@ def _short(reproduce: Section, digest: str) -> Section:
     return replace(reproduce, paragraphs=three_lines(text))
 
 
-def _kept(sections: Sequence[Section]) -> tuple[Section, ...]:
+def _core_sections(sections: Sequence[Section]) -> tuple[Section, ...]:
     return tuple(
         replace(
             s,
@@ -158,7 +160,7 @@ def _kept(sections: Sequence[Section]) -> tuple[Section, ...]:
             topics=tuple(replace(t, texts=three_lines(t.texts)) for t in s.topics),
             tables=tuple(replace(t, notes=three_lines(t.notes)) for t in s.tables),
             figures=tuple(replace(f, caption=first_lines(f.caption)) for f in s.figures),
-            subsections=_kept(s.subsections),
+            subsections=_core_sections(s.subsections),
         )
         for s in sections
         if not s.appendix
@@ -341,7 +343,7 @@ def _checks(study: Study) -> Section:
 
 def _provenance(study: Study) -> Section:
     """What went in: a short list of files here, a long one in the appendix."""
-    inputs = filled(tables.provenance(study), source_tables.made_from(study))
+    inputs = filled(tables.provenance(study), source_tables.inputs_table(study))
     words = text_of("acceptance.by_sha256")
     if many := (files := len(study.inputs)) > MANY:
         words = f"{files} input files; --full lists their sha256."

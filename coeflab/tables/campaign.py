@@ -117,14 +117,14 @@ SYMMETRIES = (PORT_STARBOARD, UP_DOWN, FOURFOLD)
 class Cut:
     """A symmetry plane through the body, on one side of which its forces are computed or measured.
 
-    The image in the plane has the same ``doubled`` components, and the opposite ``lost`` ones, which vanish in the sum.
+    The image in the plane has the same ``doubled`` components, and the opposite ``cancelled`` ones, which vanish in the sum.
 
     Attributes
     ----------
     plane : str
     symmetry : str
         That a body has which is its own image in the plane.
-    doubled, lost : tuple of str
+    doubled, cancelled : tuple of str
         Of X Y Z K M N, FRD.
     carries_no : str
         The lost ones in words.
@@ -137,7 +137,7 @@ class Cut:
     plane: str
     symmetry: str
     doubled: tuple[str, ...]
-    lost: tuple[str, ...]
+    cancelled: tuple[str, ...]
     carries_no: str
     across: tuple[str, ...]
     controls: tuple[str, ...]

@@ -7,7 +7,7 @@ A table is cut into sweeps, rows in which one variable alone changes, and every 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -89,12 +89,12 @@ def _largest(table: ForceTable) -> dict[str, float]:
     return {c: float(size.max(initial=0.0)) for c, size in sizes.items()}
 
 
-def _screened(table: ForceTable, kept: NDArray[np.bool_], limit: float) -> dict[tuple[int, str], _Cell]:
+def _screened(table: ForceTable, selected: NDArray[np.bool_], limit: float) -> dict[tuple[int, str], _Cell]:
     """Every reading that a sweep holds, by row and component; of several sweeps the one that predicts it best."""
     cells: dict[tuple[int, str], _Cell] = {}
     length = table.scaling.length
     zero = ZEROS * max(_largest(table).values(), default=0.0)
-    for sweep in sweeps_of(table, kept):
+    for sweep in sweeps_of(table, selected):
         for component, usable in table.usable.items():
             inside = usable[sweep.rows]
             x = np.ascontiguousarray(sweep.x[inside], dtype=float)
@@ -296,20 +296,22 @@ def _curvatures(table: ForceTable, cells: dict[tuple[int, str], _Cell], length: 
             )
 
 
-def _as_check(table: ForceTable, row: int, said: _Row, readings: int) -> Check:
-    words = [*said.comments, *([] if said.values else ["No derivative at the origin uses it."])]
-    if said.left_out:
-        words.insert(0, f"Left out of {listed(said.left_out)}{f', used by {listed(said.used)}' if said.used else ''}.")
-    advice = (LEFT_OUT if said.left_out and not said.used else ADVICE).replace("the row", _named(table, row))
+def _as_check(table: ForceTable, row: int, given: _Row, readings: int) -> Check:
+    words = [*given.comments, *([] if given.values else ["No derivative at the origin uses it."])]
+    if given.left_out:
+        words.insert(
+            0, f"Left out of {listed(given.left_out)}{f', used by {listed(given.used)}' if given.used else ''}."
+        )
+    advice = (LEFT_OUT if given.left_out and not given.used else ADVICE).replace("the row", _named(table, row))
     return Check(
         "data_gate",
         _where(table, row),
         Severity.WARN,
-        "; ".join([*said.cells, *said.values]),
+        "; ".join([*given.cells, *given.values]),
         f"of {readings} right readings one deviates so far with a probability above {LEVEL:g}"
-        if said.cells
+        if given.cells
         else "no row moves a value by its U95",
-        " ".join([*words, advice if said.cells or said.left_out else INFLUENTIAL]),
+        " ".join([*words, advice if given.cells or given.left_out else INFLUENTIAL]),
     )
 
 
@@ -407,7 +409,8 @@ def check(study: Study) -> Sequence[Check]:
     out: list[Check] = []
     for campaign in dict.fromkeys(t.campaign for t in study.tables):
         tables = [t for t in study.tables if t.campaign == campaign]
-        out += findings(tables, (study.plan.scaling or tables[0].scaling).length)
+        found = findings(tables, (study.plan.scaling or tables[0].scaling).length)
+        out += [replace(c, campaign=campaign) for c in found]
     return out
 
 
@@ -442,20 +445,22 @@ def findings(tables: Sequence[ForceTable], length: float) -> tuple[Check, ...]:
                 given.cells.append(_cell_text(table, component, row, cell))
                 given.components.append(component)
         _shared_errors(table, cells, rows, SHARED / sum(map(len, tables)))
+        on_table: list[Check] = []
         swapped = _exchanged(table, about, turned, length, cells)
         for row in {row for one in swapped for row in one.rows}:
             rows.pop(row, None)
-        out += [as_check("data_gate", one.finding) for one in swapped]
-        out += [as_check("data_gate", one) for one in grid_rows_elsewhere(table)]
+        on_table += [as_check("data_gate", one.finding) for one in swapped]
+        on_table += [as_check("data_gate", one) for one in grid_rows_elsewhere(table)]
         if len(rows) > MOST_LINES or (rows and len(table) > LARGEST_SWEEP):
-            out.append(_together(about, turned, length, rows))
+            on_table.append(_together(about, turned, length, rows))
         else:
             _slopes(about, turned, length, again, rows)
             _curvatures(table, cells, length, rows)
-            out += [_as_check(table, row, given, readings) for row, given in sorted(rows.items())]
-        out += _open_ends(table, cells, rows)
-        out += _pasted(table, again)
-        out += _astern(table, ahead)
+            on_table += [_as_check(table, row, given, readings) for row, given in sorted(rows.items())]
+        on_table += _open_ends(table, cells, rows)
+        on_table += _pasted(table, again)
+        on_table += _astern(table, ahead)
+        out += [replace(c, table=table.name) for c in on_table]
     out += _at_rest(tables)
     return (*out, _summary(tables[0].campaign, readings, missed, out))
 
