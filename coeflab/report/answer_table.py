@@ -11,7 +11,7 @@ from coeflab.report.figures.first_page import share_text
 
 LONGEST, MOST_ROWS, MOST_COLUMNS = 160, 6, 3
 WIDTH, MOST_MODELS = 46, 12  # of a table that stands in the place of rows
-BAR = 6  # letters of a difference that is as large as U95
+BAR, SHORT_BAR = 6, 2  # letters of a difference that is as large as U95; where there are many columns
 HALF_WIDTH = "U95: half-width of the 95 % interval."
 
 
@@ -26,7 +26,7 @@ def answer_table(found: Answer) -> Table:
     -------
     Table
         Symbol; ours with U95, also in per cent; each published column in the digits of its source; the difference to the
-        compared column over U95 as a number and a bar of `BAR` letters for one U95, ``!`` beyond. Of a publication, and of
+        compared column over U95 as a number and a bar of `BAR` letters, `SHORT_BAR` beside many columns, for one U95, ``!`` beyond. Of a publication, and of
         models, the table that stands in the place of rows.
     """
     if found.table is not None:
@@ -36,7 +36,9 @@ def answer_table(found: Answer) -> Table:
     names = short if len(set(short)) == len(short) else list(found.columns)
     is_judged = any(r.share is not None for r in found.rows)
     many = len(found.columns) > MOST_COLUMNS
-    rows = tuple((r.name, *_cells(r, many), *((_bar(r),) if is_judged else ())) for r in found.rows)
+    rows = tuple(
+        (r.name, *_cells(r, many), *((_bar(r, SHORT_BAR if many else BAR),) if is_judged else ())) for r in found.rows
+    )
     headers = ("", "ours +- U95", *names, *(("diff./U95",) if is_judged else ()))
     left = {0, *((len(headers) - 1,) if is_judged else ())}
     defined = (HALF_WIDTH,) if any(r.u95 for r in found.rows) else ()
@@ -66,8 +68,8 @@ def _cells(r: AnswerRow, many: bool = False) -> tuple[str, ...]:
     return (r.status if r.value is None else ours, *(text or ABSENT for text in r.shown))
 
 
-def _bar(r: AnswerRow) -> str:
+def _bar(r: AnswerRow, letters: int) -> str:
     if r.share is None:
         return "-"
-    whole = min(round(BAR * abs(r.share)), BAR)
+    whole = min(round(letters * abs(r.share)), letters)
     return f"{r.share:+.2f} {'#' * whole}{'!' if abs(r.share) > 1.0 else ''}".strip()
