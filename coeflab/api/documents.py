@@ -12,7 +12,7 @@ from coeflab.core.files import shipped, typed
 from coeflab.core.machine import one_thread
 from coeflab.core.provenance import InputFile, sha256_of
 from coeflab.core.types import brief
-from coeflab.formats.exporting import parameter_files_rendered
+from coeflab.formats.export import parameter_files_rendered
 from coeflab.report import content
 from coeflab.report.acceptance import Acceptance, acceptance_csv
 from coeflab.report.document import Document, Section

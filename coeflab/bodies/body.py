@@ -8,7 +8,6 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -29,9 +28,6 @@ from coeflab.core.provenance import InputFile, Source
 from coeflab.core.types import brief, in_angles, locked
 from coeflab.law.rigid_body import MassProperties
 from coeflab.law.scaling import Scaling
-
-if TYPE_CHECKING:
-    pass
 
 
 @brief

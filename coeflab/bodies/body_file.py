@@ -17,7 +17,7 @@ from coeflab.bodies.outline import Outline
 from coeflab.bodies.pieces import Control, ControlKeys, Piece
 from coeflab.bodies.recognition import outline_of
 from coeflab.bodies.shape import Shape
-from coeflab.bodies.thrusters import ThrusterKeys
+from coeflab.bodies.thruster_keys import ThrusterKeys
 from coeflab.core import declarations as takes
 from coeflab.core.axes import DatumKeys
 from coeflab.core.errors import InputError, shown

@@ -90,8 +90,7 @@ def command(
             _diagnose(study)
         if figure is not None:
             show.path(figure)
-    if study.failed or (strict and study.warned):
-        raise typer.Exit(1)
+    show.exit_code(study, strict)
 
 
 def given(words: list[str], equations: list[str]) -> tuple[list[str], dict[str, int | float | str]]:

@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from coeflab.api.parameters import ParameterFile
+    from coeflab.api.studies import Study
     from coeflab.core.finding import Finding
     from coeflab.core.table import Check, Line, Table
 
@@ -405,6 +406,17 @@ def failed(found: Sequence[Check]) -> bool:
     from coeflab.core.finding import Severity
 
     return any(c.severity is Severity.FAIL for c in found)
+
+
+def exit_code(study: Study, strict: bool) -> None:
+    """End with 1 where a finding of a study fails, or warns and that is strictly forbidden.
+
+    Raises
+    ------
+    typer.Exit
+    """
+    if study.failed or (strict and study.warned):
+        raise typer.Exit(1)
 
 
 def _short(comment: str) -> str:

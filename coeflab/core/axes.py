@@ -55,6 +55,12 @@ class Axes:
         return np.array([DIRECTIONS[d] for d in self.directions]).T
 
     @property
+    def columns(self) -> dict[str, tuple[str, float]]:
+        """For every FRD component the table's column and its sign; axes are at right angles, so each is one column."""
+        at = np.argmax(np.abs(self.rotation), axis=1)
+        return {g[i]: (g[j], float(self.rotation[i, j])) for g in ("XYZ", "KMN") for i, j in enumerate(at)}
+
+    @property
     def name(self) -> str:
         """FRD, FLU or CFD, else the three directions."""
         named = {directions: name for name, directions in FRAMES.items()}

@@ -38,7 +38,7 @@ from coeflab.study.lines import MEANING as MEANING_OF_LINE
 from coeflab.study.lines import NAME, line
 from coeflab.study.study import Study
 from coeflab.study.towed import Towed, towed
-from coeflab.vehicle.reference import Comparison, Reference, Relation
+from coeflab.vehicle.published_values import Comparison, Reference, Relation
 from coeflab.vehicle.stability import ALONE, FAST, INDICES, Derived, missing_for_stability, sense, stability
 
 ROLL = "K"  # moments of which no hull has a sign: a headline says what is open of one that is asked for, or alone

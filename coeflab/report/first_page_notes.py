@@ -20,7 +20,7 @@ from coeflab.report.tables.uncertainty import SET
 from coeflab.study.study import Study
 from coeflab.study.validation import by_measured_number, validations
 from coeflab.tables.assumptions import FLAG
-from coeflab.vehicle.reference import Reference, Relation
+from coeflab.vehicle.published_values import Reference, Relation
 
 MOST_LETTERS, MOST_NAMED = 240, 4
 NO_DATA = "no data"

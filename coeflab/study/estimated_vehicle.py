@@ -28,8 +28,7 @@ from coeflab.core.types import Array
 from coeflab.core.units import positive_typed, three_typed
 from coeflab.fits import BY_DEFAULT
 from coeflab.fits.joint.moving import LEFT_OUT
-from coeflab.formats.export import PlannedExport
-from coeflab.formats.exporting import exports_of
+from coeflab.formats.export import PlannedExport, exports_of
 from coeflab.law.added_mass import NearWall
 from coeflab.law.scaling import Conditions, Scaling, require_hull
 from coeflab.law.symbols import CONTROLS

@@ -28,7 +28,7 @@ from coeflab.study.symmetry import confirmed, of_bodies
 from coeflab.tables.reading import read_tables, table_at
 from coeflab.vehicle.assemble import PlannedParameterFile, assemble
 from coeflab.vehicle.parameter_file import read_parameter_file, refusals_told
-from coeflab.vehicle.reference import compare, compare_set, read_references
+from coeflab.vehicle.published_values import compare, compare_set, read_references
 
 if TYPE_CHECKING:
     from coeflab.bodies.body import Body
@@ -138,7 +138,7 @@ def run(plan: Plan | str | Path, progress: Progress = lambda _: None) -> Study:
     if not isinstance(plan, Plan):
         return _of_file(plan, progress)
     if plan.exports:
-        from coeflab.formats.exporting import refuse_unknown
+        from coeflab.formats.export import refuse_unknown
 
         refuse_unknown(plan.exports)
     if not plan.tables and not plan.joint:
@@ -272,7 +272,7 @@ def _used(
     refused: tuple[Refused, ...] = ()
     manoeuvres: tuple[Simulation, ...] = ()
     if plan.exports:
-        from coeflab.formats.exporting import exports_of
+        from coeflab.formats.export import exports_of
 
         exports, refused = exports_of(
             plan.exports,

@@ -34,7 +34,7 @@ if TYPE_CHECKING:
     from coeflab.vehicle.assemble import PlannedParameterFile
     from coeflab.vehicle.from_shape import Weighed
     from coeflab.vehicle.parameter_file import ParameterFile
-    from coeflab.vehicle.reference import Comparison, Reference
+    from coeflab.vehicle.published_values import Comparison, Reference
 
 
 @brief

@@ -19,7 +19,6 @@ from coeflab.tables.campaign import Cut, cut_of
 from coeflab.tables.column_company import FEW_STRANGE, PROPELLER, proposals
 from coeflab.tables.column_map import ANGLES, FORCES, WIND, ColumnMap, read_column_map, unturned
 from coeflab.tables.column_names import UNKNOWN, named_as
-from coeflab.tables.columns import columns_of
 from coeflab.tables.evidence import Evidence, across_planes, astern, evidence, turn_of
 from coeflab.tables.force_table import FEWEST_SPEEDS
 from coeflab.tables.level_columns import slopes_by_idle_columns
@@ -313,7 +312,7 @@ def _across(columns: Sequence[Assigned], frame: Axes | None, settings: Settings)
 def _of_half(offer: Proposal, cut: Cut, frame: Axes | None) -> Proposal:
     """What a column of half of a body is: of the components that the cut loses, nothing that is used."""
     given = offer.said
-    own = {c: name for c, (name, _) in columns_of(frame).items()} if frame else {c: c for c in cut.lost}
+    own = {c: name for c, (name, _) in frame.columns.items()} if frame else {c: c for c in cut.lost}
     if given is None or given.role not in ("force", "error") or given.name not in [own[c] for c in cut.lost]:
         return offer
     return Proposal("ignore", f"{LOST}, cut at {cut.plane}; {given} of the whole is not known", certain=True)

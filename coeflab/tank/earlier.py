@@ -25,9 +25,10 @@ from coeflab.tables.campaign import FILE
 from coeflab.tables.histories import Convergence
 from coeflab.tables.raw_table import Stated
 from coeflab.tables.run_summary import RunSummary
-from coeflab.tank.campaign import HISTORIES, RUNS, TowedRun
+from coeflab.tank.campaign import HISTORIES, RUNS
 from coeflab.tank.jobs import EARLIER, Job, JobState, Progressed, or_nan, progress, write_progress
 from coeflab.tank.test_matrix import TowCondition
+from coeflab.tank.towed_run import TowedRun
 
 _FORCE = re.compile(r"(?P<error>se_)?(?P<name>[XYZKMN])(?P<patch>\(.+\))? \[(?P<unit>N|N\*m)\]")
 _ROW = {

@@ -48,7 +48,7 @@ if TYPE_CHECKING:
     from coeflab.law.coefficient import CoefficientSet
     from coeflab.law.scaling import Conditions, Scaling
     from coeflab.tables.force_table import ForceTable
-    from coeflab.vehicle.reference import Reference
+    from coeflab.vehicle.published_values import Reference
 
 
 def _literature(

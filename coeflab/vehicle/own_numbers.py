@@ -12,7 +12,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from coeflab.bodies.thrusters import ThrusterKeys
+from coeflab.bodies.thruster_keys import ThrusterKeys
 from coeflab.core.axes import Datum, datum_name
 from coeflab.core.declarations import validated
 from coeflab.core.errors import InputError, shown, together

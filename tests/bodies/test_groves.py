@@ -14,7 +14,7 @@ from coeflab.bodies.readers import read_body
 from coeflab.bodies.shape import Revolution
 from coeflab.core.errors import InputError
 from coeflab.core.files import shipped
-from coeflab.vehicle.reference import read_references
+from coeflab.vehicle.published_values import read_references
 
 BODY = shipped("geometry") / "suboff_bare_hull" / "body.toml"
 JOINTS = (3.333333, 10.645833, 13.979167)

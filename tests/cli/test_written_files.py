@@ -74,7 +74,7 @@ def test_every_command_that_writes_a_parameter_file_is_here() -> None:
         if '.parameters.json"' in (text := f.read_text(encoding="utf-8")) and "to_json()" in text
     }  # fmt: skip
     assert writers == {
-        "formats/exporting.py",
+        "formats/export.py",
         "identify/tune.py",
         "cli/params.py",
         "identify/commands/identify.py",

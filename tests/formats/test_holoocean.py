@@ -11,7 +11,7 @@ import pytest
 
 from coeflab.bodies.closed_forms import ellipsoid_added_mass
 from coeflab.core.errors import InputError
-from coeflab.formats.exporting import export
+from coeflab.formats.export import export
 from coeflab.formats.holoocean import write as exporter
 from coeflab.formats.holoocean.write import CROSS_FLOW, WATER, Torpedo, lifting_area
 from coeflab.law.rigid_body import rigid_body_force

@@ -12,7 +12,7 @@ import pytest
 
 from coeflab.core.files import shipped
 from coeflab.core.wording import matlab, one_line
-from coeflab.formats.exporting import export
+from coeflab.formats.export import export
 from coeflab.formats.mss import read as importer
 from coeflab.formats.mss import write as mss
 from coeflab.formats.mss.m_file import assignments

@@ -42,7 +42,7 @@ from coeflab.tank import folder as tow_folder
 from coeflab.tank.jobs import read_job, read_progress
 from coeflab.tank.tank_file import read_tank
 from coeflab.vehicle.parameter_file import read_parameter_file
-from coeflab.vehicle.reference import read_references
+from coeflab.vehicle.published_values import read_references
 
 ROOT = Path(__file__).parents[2]
 CORPUS = Path(__file__).parent / "corpus"

@@ -13,7 +13,7 @@ import scipy.linalg
 
 from coeflab.formats.c import write as c
 from coeflab.formats.c_program.program import name_of
-from coeflab.formats.exporting import export
+from coeflab.formats.export import export
 from coeflab.formats.python_vehicle_simulator import write as pvs
 from coeflab.motion.dynamics import rates_of_one
 from coeflab.motion.manoeuvre import Manoeuvre, Phase

@@ -12,7 +12,7 @@ import pytest
 
 from coeflab.core.errors import InputError
 from coeflab.core.files import shipped
-from coeflab.formats.exporting import export
+from coeflab.formats.export import export
 from coeflab.motion.vehicle import vehicle
 from coeflab.published.flyingfish.equations import aerial_wrench, body_rates, damping, dash, earth_rates, rise
 from coeflab.published.flyingfish.model import (

@@ -33,7 +33,7 @@ from coeflab.study.study import PlannedTow, Study
 from coeflab.study.towed import Towed, TowedRow
 from coeflab.tables.assumptions import assumed as key
 from coeflab.tables.assumptions import carried
-from coeflab.vehicle.reference import PublishedValue, Reference, Relation, compare_set
+from coeflab.vehicle.published_values import PublishedValue, Reference, Relation, compare_set
 from tests.report.studies import ENDLESS, FEW, FULL, HALF, HOSTILE, LENGTH, small_study
 from tests.report.test_acceptance_document import DRAWN, found
 

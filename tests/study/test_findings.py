@@ -14,7 +14,7 @@ from coeflab.core.files import shipped
 from coeflab.core.finding import Severity
 from coeflab.core.text.toml import read_toml
 from coeflab.fits.results.fit_result import Sweep
-from coeflab.formats.export import lost_by_all
+from coeflab.formats.loss import lost_by_all
 from coeflab.law.scaling import Conditions, Scaling
 from coeflab.report.sections.conventions import conventions_section
 from coeflab.study.checks import data_gate, sizes, symmetry

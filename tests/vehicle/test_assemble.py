@@ -14,7 +14,7 @@ from coeflab.law.coefficient import Coefficient, CoefficientSet, Status
 from coeflab.law.scaling import Conditions, Scaling
 from coeflab.vehicle.assemble import PlannedParameterFile, assemble
 from coeflab.vehicle.parameter_file import ParameterFile
-from coeflab.vehicle.reference import Literature, PublishedValue, Reference, Relation
+from coeflab.vehicle.published_values import Literature, PublishedValue, Reference, Relation
 
 SCALING = Scaling(2.0, "L")
 

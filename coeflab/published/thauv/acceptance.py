@@ -317,7 +317,7 @@ def _radians(gliders: dict[str, Flown]) -> str:
 
 def _motion(gliders: dict[str, Flown]) -> tuple[str, ...]:
     words = dict.fromkeys(s for f in gliders.values() for s in f.run.statements)
-    return tuple(cast(Sequence[str], words))
+    return tuple(cast("Sequence[str]", words))
 
 
 def _case(published: dict[str, str]) -> str:

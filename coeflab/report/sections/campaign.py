@@ -50,7 +50,7 @@ from coeflab.study.symmetry import zeros
 from coeflab.study.towed import Towed, towed
 from coeflab.study.validation import validations
 from coeflab.tables.force_table import STUDIES, ForceTable
-from coeflab.vehicle.reference import Relation
+from coeflab.vehicle.published_values import Relation
 from coeflab.vehicle.stability import centre_of_pressure, stability
 
 LONGEST = 80

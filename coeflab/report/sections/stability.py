@@ -19,7 +19,7 @@ from coeflab.report.texts import table_of, text_of, texts_of
 from coeflab.study.study import Study
 from coeflab.vehicle.criteria import REVERSAL, TURNING, criteria
 from coeflab.vehicle.parameter_file import ParameterFile
-from coeflab.vehicle.reference import Relation
+from coeflab.vehicle.published_values import Relation
 from coeflab.vehicle.stability import FAST, INDICES, NO_CRITERION, SEED, SIGN_OPEN, Derived, by_mass, sense, stability
 
 RUDDER = float(np.radians(15.0))  # at which the diameter of the linear turn is stated
