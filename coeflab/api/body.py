@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     import pandas as pd
     from matplotlib.axes import Axes
 
-    from coeflab.bodies.simplify.simplified import Simplification
+    from coeflab.bodies.simplify.simplification import Simplification
 
 __all__ = ["AddedMass", "Body", "added_masses", "body_of", "finer", "near_walls", "read_body", "typed_body"]
 NOSE = "nose"

@@ -20,7 +20,7 @@ from coeflab.law.water import ROUND_DENSITY
 
 if TYPE_CHECKING:
     from coeflab.bodies.body import Body
-    from coeflab.bodies.simplify.simplified import Simplification
+    from coeflab.bodies.simplify.simplification import Simplification
     from coeflab.core.finding import Finding
     from coeflab.law.added_mass import AddedMass
 

@@ -194,12 +194,12 @@ def _diagnose(study: Study) -> None:
 
 
 def _print(study: Study, symbols: list[str]) -> None:
+    from coeflab.report.tables import budgets as budget_tables
     from coeflab.report.tables import force_tables
     from coeflab.report.tables import models as model_tables
     from coeflab.report.tables import nouns as noun_tables
     from coeflab.report.tables import oscillations as oscillation_tables
     from coeflab.report.tables import results as tables
-    from coeflab.report.tables import uncertainty as budget_tables
 
     found = tables.headline(study, symbols) or " ".join(oscillation_tables.headline(f) for f in study.fits)
     found = found or " ".join(tables.resistances(study))
@@ -215,7 +215,7 @@ def _print(study: Study, symbols: list[str]) -> None:
         models = tuple(m for f in study.fits for m in f.models)
         for model in models:
             show.table(noun_tables.terms(model))
-            show.table(budget_tables.shared(model))
+            show.table(budget_tables.model_parts(model))
         for f in study.fits:
             show.table(oscillation_tables.explained(f, study.fits))
             show.table(oscillation_tables.over_frequency(f))

@@ -19,8 +19,9 @@ from coeflab.core.text.toml import read_toml, toml_text
 from coeflab.core.types import Array, brief
 from coeflab.core.units import STANDARD_GRAVITY
 from coeflab.glider.masses import MassModel
-from coeflab.glider.motion import GliderBody, Polar, Setting
+from coeflab.glider.motion import GliderBody, Setting
 from coeflab.glider.space import Force, Lateral, SpaceBody, Thrusters
+from coeflab.glider.steady_glide import Polar
 from coeflab.motion.manoeuvre import Manoeuvre, Phase, Until
 
 AngleUnit = Literal["deg", "rad"]

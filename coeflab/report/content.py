@@ -16,11 +16,13 @@ from coeflab.fits import FITS
 from coeflab.fits.results.fit_result import FitResult
 from coeflab.formats import loss_tables
 from coeflab.report.bench import bench_of
-from coeflab.report.document import Document, Section, Topic, digest_of, every, reproduction, shipped_name
+from coeflab.report.document import Document, Section, Topic, every
 from coeflab.report.figures.svg import settings
 from coeflab.report.first_page import answer
 from coeflab.report.notation import keeping, users_texts
-from coeflab.report.sections.body import added_mass_sections, body_sections
+from coeflab.report.reproduction import digest_of, reproduction, shipped_name
+from coeflab.report.sections.added_mass import added_mass_sections
+from coeflab.report.sections.body import body_sections
 from coeflab.report.sections.campaign import (
     anchor,
     budget_sections,
@@ -38,12 +40,12 @@ from coeflab.report.sections.manoeuvres import manoeuvre_sections
 from coeflab.report.sections.review import review_sections
 from coeflab.report.sections.stability import stability_sections
 from coeflab.report.sections.verdict import SEVERAL, verdict
+from coeflab.report.tables import budgets as budget_tables
 from coeflab.report.tables import comparisons
 from coeflab.report.tables import models as model_tables
 from coeflab.report.tables import nouns as noun_tables
 from coeflab.report.tables import results as tables
 from coeflab.report.tables import sources as source_tables
-from coeflab.report.tables import uncertainty as budget_tables
 from coeflab.report.texts import text_of
 from coeflab.report.workers import begun
 from coeflab.study.study import Study

@@ -21,12 +21,13 @@ from coeflab.law.coefficient import SAID, Coefficient, CoefficientSet, Status
 from coeflab.law.symbols import derivative, primed
 from coeflab.report.acceptance import Acceptance, by_basis, held
 from coeflab.report.answer_table import LONGEST, MOST_COLUMNS, MOST_MODELS, MOST_ROWS
-from coeflab.report.document import Answer, AnswerRow, Chip, Document, Figure, digest_of
+from coeflab.report.document import Answer, AnswerRow, Chip, Document, Figure
 from coeflab.report.figures.first_page import axes_figure, forest_figure, renamed, shares_figure, slope_figure
 from coeflab.report.figures.model import model_figures
 from coeflab.report.figures.svg import size_of
 from coeflab.report.first_page_notes import MOST_NAMED, NO_DATA, Beside, notes
 from coeflab.report.notation import keeping, users_texts
+from coeflab.report.reproduction import digest_of
 from coeflab.report.sections.campaign import anchor, moved_from
 from coeflab.report.sections.estimates import answer_of_shape
 from coeflab.report.sections.stability import from_literature, no_index

@@ -294,7 +294,7 @@ def model(found: FittedModel) -> tuple[Part, ...]:
 def budget(found: Budget) -> tuple[Part, ...]:
     """The parts of a U95 as bars and in a table."""
     from coeflab.report.sections.campaign import tornado_figure
-    from coeflab.report.tables.uncertainty import budget as of_budget
+    from coeflab.report.tables.budgets import budget as of_budget
 
     figure = replace(tornado_figure(found, DRAWN), caption="") if found.parts else None
     return (_parts(_picture(figure), f"<div>{_shown(of_budget(found))}</div>"),)
@@ -367,7 +367,7 @@ def _findings(found: Sequence[Check]) -> tuple[Part, ...]:
 
 
 def _budgets(found: Sequence[Budget]) -> tuple[Part, ...]:
-    from coeflab.report.tables.uncertainty import overview
+    from coeflab.report.tables.budgets import overview
 
     return (_shown(overview(found)),)
 
@@ -405,7 +405,7 @@ def _span(values: Array) -> tuple[str, str]:
 @_card
 def body(found: Body) -> tuple[Part, ...]:
     """Outlines from the side and from above, and particulars."""
-    from coeflab.report.sections.body import hull_figure
+    from coeflab.report.figures.hull_outline import hull_figure
     from coeflab.report.tables.added_mass import particulars
 
     figure = None

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from coeflab.bodies.body import Body
 from coeflab.bodies.readers.primitives import read
 from coeflab.bodies.shape import Box, Cylinder, Ellipsoid, Form, Part, Parts, Plate, shadow
-from coeflab.bodies.simplify.simplified import part_file
+from coeflab.bodies.simplify.part_file import part_file
 from coeflab.bodies.simplify.simplify import NamedBox, parse_box, read_boxes
 from coeflab.core.axes import Datum
 from coeflab.core.errors import InputError

@@ -30,7 +30,7 @@ from coeflab.core.errors import CoeflabError
 from coeflab.core.files import shipped
 from coeflab.core.finding import Severity
 from coeflab.core.table import Check
-from coeflab.formats.imported_file import Stated, imported_file
+from coeflab.formats.stated_file import Stated, stated_file
 from coeflab.glider.flight import Flown
 from coeflab.glider.glide import GlideRun
 from coeflab.glider.glider import Glider, gliders_at, read_glider
@@ -485,4 +485,4 @@ def validate_remus(values: dict[str, float]) -> Verdicts:
     coefficients = {s: (v / scaling.unit(s, at.density, at.speed), "motion") for s, v in values.items()}
     mass = MassProperties(30.48, 0.0, 3.45, np.array([0.0, 0.0, 0.0196]), np.diag([0.177, 3.45, 3.45]))
     stated = Stated("remus", "remus", scaling, at, coefficients, mass=mass)
-    return Verdicts({}, of_checks(plausibility(imported_file(stated, [], ("prestero2001",)))))
+    return Verdicts({}, of_checks(plausibility(stated_file(stated, [], ("prestero2001",)))))

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from coeflab.glider.motion import Polar, glide
+from coeflab.glider.steady_glide import Polar, glide
 from coeflab.published.thauv.acceptance import GlideSpeed, calibrated, incidence_at, speed_of
 
 PLANTED = np.array([150.0, 5.0, 2.0, 3.5])

@@ -20,8 +20,8 @@ from coeflab.bodies.shape import Box, Cylinder, Ellipsoid, Part, Parts, Plate, S
 from coeflab.law.transforms import rotation
 from coeflab.report.figures.body import FRONT, OBLIQUE, SIDE, TOP, Sheet, _spread, body_figure, rulers, ticks
 from coeflab.report.figures.body_scene import body_scene
+from coeflab.report.figures.hull_scene import hull_scene
 from coeflab.report.figures.palette import COLOURS
-from coeflab.report.sections.body import hull_scene
 
 SVG = "{http://www.w3.org/2000/svg}"
 SHAPE = Parts(

@@ -11,8 +11,8 @@ from coeflab.law.coefficient import COVERS
 from coeflab.report.figures.palette import COLOURS
 from coeflab.report.sections.campaign import tornado_figure
 from coeflab.report.sections.coefficients import coefficients_section
+from coeflab.report.tables import budgets as budget_tables
 from coeflab.report.tables import results
-from coeflab.report.tables import uncertainty as budget_tables
 from coeflab.study.validation import validation
 from coeflab.tables.campaign import InputUncertainty
 from coeflab.vehicle.stability import centre_of_pressure

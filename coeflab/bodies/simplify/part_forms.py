@@ -27,7 +27,7 @@ from coeflab.bodies.mesh.solids import (
     surface,
 )
 from coeflab.bodies.shape import Bar, Box, Cylinder, Ellipsoid, Form, Plate, Tube, Turned, shadow
-from coeflab.bodies.simplify.segmentation import round_hull
+from coeflab.bodies.simplify.round_hull import round_hull
 from coeflab.core.types import Array, brief
 from coeflab.law.transforms import about_axis, relabelled
 

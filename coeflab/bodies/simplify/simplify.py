@@ -17,9 +17,11 @@ from coeflab.bodies.mesh import solids
 from coeflab.bodies.mesh.mesh import TriangleMesh
 from coeflab.bodies.mesh.meshing import meshed
 from coeflab.bodies.shape import THIN, Faceted, Part, Parts
+from coeflab.bodies.simplify.convex_pieces import convex_pieces
 from coeflab.bodies.simplify.part_forms import Likeness, Piece, likeness
-from coeflab.bodies.simplify.segmentation import convex_pieces, patches, segments, without_overlap
-from coeflab.bodies.simplify.simplified import KEPT_FACES, Simplification, SimplifiedPart
+from coeflab.bodies.simplify.seams import patches
+from coeflab.bodies.simplify.segmentation import segments, without_overlap
+from coeflab.bodies.simplify.simplification import KEPT_FACES, Simplification, SimplifiedPart
 from coeflab.core.declarations import Declaration, Text, declared, numbers
 from coeflab.core.errors import InputError, shown
 from coeflab.core.machine import one_thread

@@ -48,8 +48,8 @@ from coeflab.formats.gazebo.law import (
     read_tags,
 )
 from coeflab.formats.gazebo.systems import GZ_SIM
-from coeflab.formats.imported_file import LinkModel, link_file
 from coeflab.formats.left_out import MOST, left_out, other_plugins, unread_tags
+from coeflab.formats.link_file import LinkModel, link_file
 from coeflab.law.rigid_body import ideal_quadratics, inertia_doubt
 from coeflab.law.water import ROUND_DENSITY
 from coeflab.vehicle.imported_numbers import BUOYANCY, Written, displaced, gravity, imperial, munk_twice, no_mass, water

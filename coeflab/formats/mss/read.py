@@ -16,7 +16,6 @@ from coeflab.core.table import Check
 from coeflab.core.text.toml import read_text
 from coeflab.core.texts import input_error
 from coeflab.core.units import STANDARD_GRAVITY
-from coeflab.formats.imported_file import MODEL_ORIGIN, Law, Stated, imported_file, matrix_doubts
 from coeflab.formats.left_out import left_out
 from coeflab.formats.mss.m_file import (
     DENSITIES,
@@ -31,6 +30,8 @@ from coeflab.formats.mss.m_file import (
     is_derivative,
     read_m_file,
 )
+from coeflab.formats.stated_coefficients import matrix_doubts
+from coeflab.formats.stated_file import MODEL_ORIGIN, Law, Stated, stated_file
 from coeflab.law.added_mass import AddedMass, potential_part
 from coeflab.law.rigid_body import MassProperties, ideal_quadratics, inertia_doubt, parallel_axis
 from coeflab.law.scaling import Conditions, Scaling
@@ -77,7 +78,7 @@ def read(path: Path, density: float | None = None) -> ParameterFile:
     found = read_m_file(path)
     source = InputFile(path.name, sha256_of(path))
     stated = _own(found, path) if "coeflab" in found.numbers else _foreign(found, path, density)
-    return imported_file(stated, [source], citations)
+    return stated_file(stated, [source], citations)
 
 
 def examine(path: Path) -> tuple[Check, ...]:

@@ -16,8 +16,8 @@ from coeflab.core.text.toml import read_text
 from coeflab.core.text.xml import numbers, once, read_xml
 from coeflab.core.wording import one_line
 from coeflab.formats.gazebo.assembly import assembly
-from coeflab.formats.imported_file import LinkModel, link_file
 from coeflab.formats.left_out import left_out, other_masses, other_plugins, unread_tags
+from coeflab.formats.link_file import LinkModel, link_file
 from coeflab.formats.uuv_simulator.fins import fins_of
 from coeflab.formats.uuv_simulator.law import (
     FRD,

@@ -37,7 +37,7 @@ from coeflab.core.provenance import InputFile, sha256_of
 from coeflab.core.text.toml import read_toml
 from coeflab.core.types import Array, brief, locking
 from coeflab.core.units import STANDARD_GRAVITY
-from coeflab.formats.imported_file import stated_table
+from coeflab.formats.stated_table import stated_table
 from coeflab.law.added_mass import AddedMass, OtherMethod
 from coeflab.law.rigid_body import MassProperties, rigid_body_inertia
 from coeflab.law.transforms import incidence

@@ -20,7 +20,7 @@ from coeflab.core.text.delimited import read_cells
 from coeflab.core.text.toml import read_toml
 from coeflab.core.types import Array, brief, locking
 from coeflab.core.version import VERSION
-from coeflab.formats.imported_file import stated_table
+from coeflab.formats.stated_table import stated_table
 from coeflab.law.added_mass import AddedMass
 from coeflab.law.rigid_body import MassProperties
 from coeflab.law.scaling import Conditions, Scaling

@@ -22,7 +22,8 @@ from coeflab.core.types import Array, brief
 from coeflab.glider.flight import Flown, fly
 from coeflab.glider.glide import steady_glides
 from coeflab.glider.glider import Glider, GliderPhase
-from coeflab.glider.motion import Polar, balanced, glide, unexplained_power
+from coeflab.glider.motion import unexplained_power
+from coeflab.glider.steady_glide import Polar, balanced, glide
 from coeflab.published.parameter_files import thauv_file
 from coeflab.published.publication import Row, publication
 from coeflab.published.thauv.figures import figures

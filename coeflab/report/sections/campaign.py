@@ -35,14 +35,14 @@ from coeflab.report.figures.sweep import sweep_figure
 from coeflab.report.figures.variables import moving, response_name
 from coeflab.report.sections.coefficients import in_one_line
 from coeflab.report.sections.oscillations import oscillation_sections
+from coeflab.report.tables import budgets as budget_tables
 from coeflab.report.tables import models as joint_tables
 from coeflab.report.tables import models as model_tables
 from coeflab.report.tables import own_cfd
 from coeflab.report.tables import results as tables
 from coeflab.report.tables import sources as source_tables
 from coeflab.report.tables import sweeps as sweep_tables
-from coeflab.report.tables import uncertainty as budget_tables
-from coeflab.report.tables.uncertainty import SET
+from coeflab.report.tables.budgets import SET_IN_A_COMPUTATION
 from coeflab.report.texts import text_of
 from coeflab.study.lines import MEANING
 from coeflab.study.study import Study
@@ -314,10 +314,10 @@ def budget_sections(study: Study) -> tuple[Section, ...]:
     tables = (
         budget_tables.overview(found),
         budget_tables.grids(found),
-        budget_tables.studies(found),
+        budget_tables.variant_studies(found),
         budget_tables.validation(validations(study, found)),
         budget_tables.derived(derived),
-        *(budget_tables.shared(m) for m in models),
+        *(budget_tables.model_parts(m) for m in models),
     )
     text = (
         text_of("campaign.joined"),
@@ -351,7 +351,7 @@ def tow_sections(study: Study) -> tuple[Section, ...]:
         return ()
     campaigns = {one.tow.campaign for one in found}
     unassessed = dict.fromkeys(name for b in study.budgets if b.campaign in campaigns for name in b.unassessed)
-    left = "; ".join(name for name in unassessed if name not in SET and not name.startswith("grid"))
+    left = "; ".join(name for name in unassessed if name not in SET_IN_A_COMPUTATION and not name.startswith("grid"))
     text: tuple[str, ...] = (
         text_of(
             "campaign.own_tows",
