@@ -42,7 +42,8 @@ from coeflab.published.flyingfish import acceptance as flyingfish
 from coeflab.published.flyingfish import motions
 from coeflab.published.flyingfish.model import FlyingFish, calibrated, read_flyingfish
 from coeflab.published.huuv import acceptance as huuv
-from coeflab.published.huuv.five_dof import FiveDof, five_dof_file, read_five_dof
+from coeflab.published.huuv.five_dof import FiveDof, read_five_dof
+from coeflab.published.huuv.five_dof_file import five_dof_file
 from coeflab.published.huuv.five_dof_rows import stated_rows
 from coeflab.published.huuv.model import Huuv, parameter_file, read_huuv
 from coeflab.published.parameter_files import flyingfish_file

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import Any
 
 import numpy as np
 
@@ -19,19 +18,15 @@ from coeflab.bodies.shape import (
     Parts,
     Plate,
     StandIn,
-    Turned,
     shadow,
 )
-from coeflab.bodies.simplify.part_file import form_keys, mesh_name, part_file
+from coeflab.bodies.simplify.part_file import mesh_name, part_file
 from coeflab.bodies.simplify.part_forms import MISFIT, SHARED, Likeness
-from coeflab.core.table import ABSENT, Table, number
 from coeflab.core.types import Array, brief
 from coeflab.law.added_mass import AddedMass
-from coeflab.law.symbols import COMPONENTS, MOTIONS
 
 TOLD = np.radians(0.05)
-POOR, POOR_VOLUME, FAILED, DECIMALS = 0.05, 0.02, 0.2, 6
-UNITS = ("kg",) * 3 + ("kg m^2",) * 3
+POOR, FAILED, DECIMALS = 0.05, 0.2, 6
 MESH, KEPT_FACES = "mesh.ply", 200_000
 RULES = (
     "A thin body (mean thickness under 0.2 of the shorter of mean chord and span) is a plate of the area that it "
@@ -175,7 +170,7 @@ class Simplification:
             for name, error in p.part.fit.counting.items()
             if name.startswith("A") and abs(error) > FAILED
         ]
-        errors = self._projected() - sum(self._counting(p) for p in self.parts)
+        errors = self.projected - sum(self._counting(p) for p in self.parts)
         whole = errors / self.mesh.integrals.projected
         return (
             *out,
@@ -192,21 +187,6 @@ class Simplification:
             normal = p.part.rotation[:, 2]
             return np.asarray(np.abs(normal) * np.abs(area @ normal).sum() / 2.0)
         return np.asarray(np.abs(area).sum(axis=0) / 2.0)
-
-    def agreement_table(self) -> Table:
-        """Added mass of the parts beside the mesh's in six motions; no rows where nothing was compared."""
-        if self.compared is None:
-            return Table("Parts against mesh", (), ())
-        parts, mesh = (np.diag(found.matrix) for found in self.compared)
-        error = np.nan_to_num(np.diag(self.compared[1].error)) if self.compared[1].error is not None else np.zeros(6)
-        unknown = self.compared[1].error is None  # too few panels for a family
-        entries = (None,) * 6 if self.shape.agreement is None else self.shape.agreement.entries
-        rows = [
-            (f"{c}{m}dot", unit, number(-a, 4), number(-b, 4), ABSENT if unknown or b <= e else f"{e / b:.1%}", ABSENT if d is None else _percent(d))
-            for c, m, unit, a, b, e, d in zip(COMPONENTS, MOTIONS, UNITS, parts, mesh, error, entries, strict=True)
-        ]  # fmt: skip
-        headers = ("", "unit", "parts", "mesh", "error of mesh", "parts over mesh, less one")
-        return Table("Parts against mesh", headers, tuple(rows), (self.advice, *self.compared[1].statements[:1]))
 
     @property
     def recommended(self) -> str | None:
@@ -238,95 +218,11 @@ class Simplification:
             )
         return f"Parts agree with the mesh within {worst:.1%} in every motion; {APART:.0%} is the bound.{unsure}"
 
-    def part_table(self) -> Table:
-        """Sizes and errors part by part."""
-        rows = []
-        for p in self.parts:
-            kind, sizes = form_keys(p.part.form)
-            size = ", ".join(f"{key.replace('_', ' ')} {value:g}" for key, value in sizes.items())
-            if isinstance(p.part.form, Turned):
-                size = f"length {p.part.form.length:g}, radius {max(p.part.form.radii):g}"
-            if isinstance(p.part.form, Faceted):
-                size = f"{len(p.part.form.mesh.faces)} faces"
-            errors = [_percent(e) for e in (p.volume_error, *p.projected_errors, p.length_error)]
-            rows.append((p.part.name, kind, size, number(p.volume, 5), number(p.part.form.volume, 5), *errors))
-        notes = [
-            "errors: form over mesh, less one; A: projected areas along the part's own axes; length: the largest extent, of a plate in span"
-        ]
-        notes += [f"{p.part.name}: {remark}" for p in self.parts for remark in p.remarks]
-        notes += [f"LOOK AT {p.part.name}: {', '.join(p.poor)}" for p in self.parts if p.poor]
-        headers = ("part", "form", "m", "mesh m^3", "form m^3", "V", "A x", "A y", "A z", "length")
-        return Table("Parts", headers, tuple(rows), (*notes, *self.statements), frozenset({0, 1, 2}))
-
-    def total_table(self) -> Table:
-        """The whole mesh beside the sum of the parts."""
-        pieces = sum(p.volume for p in self.parts)
-        plates = sum(p.volume for p in self.parts if not p.part.form.volume)
-        whole = pieces + self.unassigned
-        centre = self.shape.centre_of_volume
-        rows = [
-            ("volume m^3", number(whole, 6), number(self.shape.volume, 6), _percent(self.shape.volume / whole - 1.0)),
-            ("of it plates m^3", number(plates, 4), "0", ABSENT),
-            (
-                "unassigned m^3",
-                number(abs(self.unassigned), 3),
-                ABSENT,
-                f"{abs(100.0 * self.unassigned / whole):.4f} %",
-            ),
-        ]
-        for axis, a, b in zip(
-            "xyz", *(np.round(c, 5) + 0.0 for c in (self.mesh.centre_of_volume, centre)), strict=True
-        ):
-            rows.append((f"centre of volume {axis} m", f"{a:.5f}", f"{b:.5f}", f"{b - a:+.5f} m"))
-        for axis, a, b in zip("xyz", self.mesh.integrals.projected, self._projected(), strict=True):
-            rows.append((f"projected area along {axis} m^2", number(a, 5), number(b, 5), _percent(b / a - 1.0)))
-        notes: tuple[str, ...] = ("projected areas: sums over the parts, what hides what is not looked at", *RULES)
-        if abs(self.shape.volume / whole - 1.0) > POOR_VOLUME:
-            notes = (
-                f"LOOK: the parts displace {self.shape.volume / whole - 1.0:+.1%} of the mesh's volume, and the centre moves "
-                "with it; plates displace nothing",
-                *notes,
-            )
-        return Table("Whole body", ("", "mesh", "parts", "error"), tuple(rows), notes)
-
-    def _projected(self) -> Array:
+    @property
+    def projected(self) -> Array:
+        """(3,) areas, m^2, along x, y and z: sums over the parts, what hides what is not looked at."""
         along = np.eye(3)
         return np.array([sum(shadow(p.form, p.rotation.T @ d) for p in self.shape.parts) for d in along])
-
-    def as_json(self) -> dict[str, Any]:
-        """Everything that the tables show, in SI."""
-        parts = [
-            {
-                "name": p.part.name, "form": form_keys(p.part.form)[0], "sizes": form_keys(p.part.form)[1],
-                "centre": p.part.centre.tolist(), "rotation": p.part.rotation.tolist(),
-                "mesh_volume": p.volume, "misfit": p.likeness.misfit, "shared": p.likeness.shared, "volume": p.part.form.volume, "volume_error": p.volume_error,
-                "projected_area_errors": p.projected_errors.tolist(), "length_error": p.length_error,
-                "class": p.likeness.kind, "stand_in": not p.likeness.clear, "look_at": list(p.poor),
-                "remarks": list(p.remarks),
-            }
-            for p in self.parts
-        ]  # fmt: skip
-        return {
-            "body": self.body.name,
-            "parts": parts,
-            "mesh_volume": sum(p.volume for p in self.parts) + self.unassigned,
-            "volume": self.shape.volume,
-            "unassigned": self.unassigned,
-            "mesh_centre_of_volume": self.mesh.centre_of_volume.tolist(),
-            "centre_of_volume": self.shape.centre_of_volume.tolist(),
-            "mesh_projected_areas": self.mesh.integrals.projected.tolist(),
-            "projected_areas": self._projected().tolist(),
-            "against_mesh": None
-            if self.shape.agreement is None
-            else dict(zip(MOTIONS, self.shape.agreement.entries, strict=True)),
-            "mesh_error": None if self.shape.agreement is None else self.shape.agreement.error,
-            "recommended": self.recommended,
-            "advice": self.advice,
-            "failures": list(self.failures),
-            "status": "failed" if self.failures else "ok",
-            "rules": list(RULES),
-            "statements": list(self.statements),
-        }
 
     def part_file(self) -> bytes:
         """The body.toml of the parts, with remarks for the person who corrects it."""
@@ -359,8 +255,3 @@ class Simplification:
 def _rounded(value: float) -> float:
     """As the file gives it."""
     return round(float(value), DECIMALS) + 0.0
-
-
-def _percent(share: float) -> str:
-    text = f"{100.0 * share:+.1f} %"
-    return "0.0 %" if text in ("+0.0 %", "-0.0 %") else text

@@ -14,7 +14,8 @@ from coeflab.motion.marching import idle, integrated_forces
 from coeflab.motion.vehicle import vehicle
 from coeflab.published.huuv import tuning
 from coeflab.published.huuv.figures import paper_figures, tuning_figures
-from coeflab.published.huuv.five_dof import five_dof_file, read_five_dof
+from coeflab.published.huuv.five_dof import read_five_dof
+from coeflab.published.huuv.five_dof_file import five_dof_file
 from coeflab.published.huuv.five_dof_rows import dived, moving_rows, stated_rows
 from coeflab.published.huuv.model import MATLAB, TRACKER, Huuv, Turns, parameter_file, read_huuv, thrust
 from coeflab.published.publication import Row, publication

@@ -110,9 +110,7 @@ def budget(b: Budget) -> Table:
                 statement=c.statement,
             )
         )
-    notes += [
-        f"{s.component} at {s.setting}, {s.statement}: 95 % {percent(s.half_width, s.used)}." for s in b.studies
-    ]
+    notes += [f"{s.component} at {s.setting}, {s.statement}: 95 % {percent(s.half_width, s.used)}." for s in b.studies]
     notes.append(f"Not assessed: {', '.join(b.unassessed) or 'nothing known'}.")
     return table_of("uncertainty.budget", rows, notes, symbol=primed(b.symbol), campaign=b.campaign)
 
@@ -124,14 +122,14 @@ def _unit(name: str) -> str:
 
 def model_parts(model: FittedModel) -> Table:
     """What the half-widths of a fitted model hold beside the scatter; no rows where nothing."""
-    names = tuple(model.model_parts)
+    names = tuple(model.shared)
     forms = np.zeros(len(model.terms)) if model.remainder is None else model.remainder.half_width
     columns = (
         model.fit.coefficients,
         model.half_width,
         model.fit.half_width,
         forms,
-        *(abs(model.model_parts[n]) for n in names),
+        *(abs(model.shared[n]) for n in names),
     )
     rows = tuple(
         (symbol, *(coefficient(float(values[i])) for values in columns))
