@@ -204,6 +204,7 @@ def simulate(
         Of rk4, and between rows, s.
     integrator : {"adaptive", "rk4"}, optional
     simulator : str
+        Name from ``cf.plugins("simulators")``; draws need rigid_body.
     tables : bool
         Fitted tables come before derivatives.
     accelerations : {"measured", "computed"}
@@ -219,7 +220,7 @@ def simulate(
     Raises
     ------
     InputError
-        An option that the manoeuvre has not or cannot take, a motion that the file does not know; draws of a file without U95.
+        An option that the manoeuvre lacks or cannot take, a motion unknown to the file; draws of a file without U95.
 
     Examples
     --------

@@ -36,6 +36,7 @@ def _slopes(p: ParameterFile) -> tuple[Check, ...]:
 
 
 def _added_mass(p: ParameterFile) -> tuple[Check, ...]:
+    """Acceleration derivatives that differ from the added mass."""
     hull = p.added_mass
     if hull is None:
         return ()
@@ -47,30 +48,29 @@ def _added_mass(p: ParameterFile) -> tuple[Check, ...]:
     ]
     if not differing:
         return ()
-    return (Check(
-        NAME, "added mass stated twice", Severity.NOTE, f"{'; '.join(differing)} (SI)", "one place, or equal",
-        "The coefficient is used, the matrix for all other entries; --accelerations computed uses the matrix alone.",
-    ),)  # fmt: skip
+    both = Finding.of(
+        "parameter_file.added_twice", "added mass stated twice", Severity.NOTE, differing="; ".join(differing)
+    )
+    return (as_check(NAME, both),)
 
 
 def _inertia(p: ParameterFile) -> tuple[Check, ...]:
+    """A transverse moment of inertia that differs from the matrix."""
     mass = p.mass
     if mass is None or mass.inertia is None or mass.inertia_matrix is None:
         return ()
     across = np.diag(mass.inertia_matrix)[1:]
     if np.all(np.abs(across - mass.inertia) <= ALIKE * mass.inertia):
         return ()
-    return (Check(
-        NAME, "mass.inertia and mass.inertia_matrix", Severity.NOTE,
-        f"{mass.inertia:.4g}, and Iy {across[0]:.4g}, Iz {across[1]:.4g} kg m^2", "one of them, or equal", "The matrix is used.",
-    ),)  # fmt: skip
+    return (as_check(NAME, Finding.of(
+        "parameter_file.inertia_twice", "mass.inertia and mass.inertia_matrix", Severity.NOTE, statistic=mass.inertia,
+        pitch=float(across[0]), yaw=float(across[1]),
+    )),)  # fmt: skip
 
 
 def _intervals(p: ParameterFile) -> tuple[Check, ...]:
+    """A status that says that an interval exists, without one."""
     bare = [c.symbol for c in p.coefficients if c.status is Status.OK and c.u95 is None]
     if not bare:
         return ()
-    return (Check(
-        NAME, ", ".join(bare), Severity.WARN, "status ok without u95", "a U95",
-        "ok says that an interval exists. Write u95, or the status stated for a number without one.",
-    ),)  # fmt: skip
+    return (as_check(NAME, Finding.of("parameter_file.no_u95", ", ".join(bare), Severity.WARN)),)

@@ -28,7 +28,7 @@ from coeflab.arm.thrusters import (
     TorqueThruster,
     VoltageThruster,
     lost_directions,
-    require_all_directions,
+    thrust_allocation,
     thruster_matrix,
 )
 from coeflab.core.errors import InputError
@@ -204,11 +204,11 @@ def test_thrusts_reach_the_vehicle_through_their_states() -> None:
 
 def test_thruster_matrix_says_what_it_loses() -> None:
     thrusters = puma().thrusters
-    inverse = require_all_directions(thrusters)
+    inverse = thrust_allocation(thrusters)
     np.testing.assert_allclose(thruster_matrix(thrusters) @ inverse, np.eye(6), atol=1e-12)
     assert lost_directions(thruster_matrix(thrusters[:4])) == ("heave", "roll", "pitch")
     with pytest.raises(InputError, match="no surge, no sway, no yaw"):
-        require_all_directions(thrusters[4:])
+        thrust_allocation(thrusters[4:])
     aside = [Thruster("aside", np.array([0.5, 0.0, 0.0]), np.array([0.0, 1.0, 0.0]))]
     assert "sway apart from yaw (N = 0.5 m Y)" in lost_directions(thruster_matrix(aside))
     assert len(lost_directions(thruster_matrix([]))) == 6

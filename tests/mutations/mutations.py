@@ -27,7 +27,7 @@ from coeflab.published.flyingfish import equations as aerial
 from coeflab.published.flyingfish import model as flyingfish_model
 from coeflab.published.flyingfish import motions
 from coeflab.published.flyingfish.model import FlyingFish
-from coeflab.published.huuv import five_dof
+from coeflab.published.huuv import five_dof, five_dof_file
 from coeflab.published.huuv import model as huuv_model
 from tests.mutations.arm import URV
 from tests.mutations.blind import BLIND, flipped
@@ -373,8 +373,8 @@ FIVE = (
     ("equation 30 as printed: c^2 b^3", five_law(five_dof.simple_masses, "short**2 * wide", "short**2 * wide**3")),
     ("equation 31 as printed: L_m^3", five_law(five_dof.simple_masses, "((r + tall) ** 3 - r**3)", "tall**3")),
     ("slope of C_m(alpha): sign of the Munk moment", five_law(five_dof.pitch_slope, "added[2, 2] - added[0, 0]", "added[0, 0] - added[2, 2]")),
-    ("sign of the lift in the parameter file", five_law(five_dof.five_dof_file, 'c["s1"] / by', '-c["s1"] / by')),
-    ("delta + alpha in the parameter file", five_law(vars(five_dof)["_effective"], "(-1.0) ** k", "1.0")),
+    ("sign of the lift in the parameter file", five_law(five_dof_file.five_dof_file, 'c["s1"] / by', '-c["s1"] / by')),
+    ("delta + alpha in the parameter file", five_law(vars(five_dof_file)["_effective"], "(-1.0) ** k", "1.0")),
 )  # fmt: skip
 
 HUUV = (

@@ -22,7 +22,7 @@ from coeflab.fits.statistics import data_gate, origin_slope
 from coeflab.fits.statistics.data_gate import FEWEST, Parity
 from coeflab.fits.statistics.slopes import rest_and_curvature
 from coeflab.law.symbols import MOMENTS, PORT_STARBOARD, primed
-from coeflab.study.exchanged_rows import Exchanged, Slope, exchanged_rows, grid_rows_elsewhere
+from coeflab.study.rows_elsewhere import Exchanged, Slope, exchanged_rows, grid_rows_elsewhere
 from coeflab.study.table_sweeps import Sweep, ahead_counts, setting_in_words, sweeps_of
 
 if TYPE_CHECKING:
