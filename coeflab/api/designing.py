@@ -183,7 +183,7 @@ def next_tests(
         fitted += [tables if isinstance(tables, Result) else fit(tables)]
     sweeps = [s for r in fitted for f in r.fits for s in f.sweeps]
     joint = [r for r in fitted if r.tables and not any(f.sweeps for f in r.fits)]
-    beside = [s for r in joint for f in fit(list(r.tables)).fits for s in f.sweeps]
+    others = [s for r in joint for f in fit(list(r.tables)).fits for s in f.sweeps]
     measured = [c for r in fitted for f in r.fits for c in f.coefficients.coefficients]
     valued = [c for c in measured if c.value is not None]
     known = {c.symbol.removesuffix("'"): c for c in (*measured, *held, *reversed(valued))}
@@ -199,7 +199,7 @@ def next_tests(
         None if noise is None else share_of(noise, "noise"),
         target=goal,
         computed=computed,
-        beside=beside,
+        others=others,
         given=_given(kind, name, [c for r in fitted for f in r.fits for c in f.campaigns]),
     )
     return NextTests(**{f.name: getattr(found, f.name) for f in fields(plain_tests.NextTests)})

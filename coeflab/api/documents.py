@@ -88,9 +88,9 @@ def report_of(found: Study | Acceptance, *, short: bool = False, full: bool = Fa
     return Report(_commanded(parted, "--full") if full or review else content.core(parted), not found.holds)
 
 
-def _one_page(made: Document) -> Document:
+def _one_page(document: Document) -> Document:
     """The answer alone, where there is one: it is the page."""
-    return made if made.answer is None else replace(made, sections=())
+    return document if document.answer is None else replace(document, sections=())
 
 
 LONGEST = 8  # rows of a table of numbers that the core prints
@@ -160,7 +160,7 @@ def only(document: Document, names: Sequence[str]) -> Document:
                 column="--section",
                 advice=f"Did you mean {near[0]}?" if near else "",
             )
-    return replace(document, sections=_kept(document.sections, {n.casefold() for n in names}))
+    return replace(document, sections=_selected(document.sections, {n.casefold() for n in names}))
 
 
 def written(document: Document, formats: Sequence[str]) -> Mapping[str, bytes]:
@@ -235,12 +235,12 @@ def _every(sections: Sequence[Section]) -> list[Section]:
     return [s for one in sections for s in (one, *_every(one.subsections))]
 
 
-def _kept(sections: Sequence[Section], names: set[str]) -> tuple[Section, ...]:
+def _selected(sections: Sequence[Section], names: set[str]) -> tuple[Section, ...]:
     """Named sections whole; of the others those that hold a named one, without their own text."""
     out = []
     for s in sections:
         if names & {s.anchor.casefold(), s.title.casefold()}:
             out.append(s)
-        elif inner := _kept(s.subsections, names):
+        elif inner := _selected(s.subsections, names):
             out.append(Section(s.anchor, s.title, subsections=inner))
     return tuple(out)

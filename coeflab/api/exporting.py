@@ -69,13 +69,13 @@ def export(
 
 
 def refusal(
-    made: Export, parameters: ParameterFile, expected: str, advice: str = WITH_MASS, place: str = ""
+    result: Export, parameters: ParameterFile, expected: str, advice: str = WITH_MASS, place: str = ""
 ) -> InputError:
     """The error about a target that loses part of a file and nobody accepted that.
 
     Parameters
     ----------
-    made : Export
+    result : Export
     parameters : ParameterFile
     expected : str
         What would do.
@@ -84,9 +84,9 @@ def refusal(
     place : str
         Before the words, such as the target.
     """
-    loss = made.loss
-    lost = () if loss is None else loss.lost
-    missing = any(x.kind is Kind.MISSING and "added mass" in x.what for x in lost)
+    loss = result.loss
+    losses = () if loss is None else loss.lost
+    missing = any(x.kind is Kind.MISSING and "added mass" in x.what for x in losses)
     return InputError(
         f"{place}a target that loses part of {shown(parameters.name)}: {'' if loss is None else loss_tables.in_short(loss)}", expected,
         advice=advice if missing else "",

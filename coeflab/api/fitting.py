@@ -88,7 +88,7 @@ def fit(
     if not every:
         raise InputError("no table", "a table, or several", column="tables")
     read: list[ForceTable] = [t for one in every for t in read_tables(one)]
-    read = _told_apart(read)
+    read = _distinct(read)
     names = [t.name for t in read]
     if twice := next((n for n in names if names.count(n) > 1), None):
         raise InputError(
@@ -120,7 +120,7 @@ def _given(fits: Sequence[FitResult], read: Sequence[ForceTable]) -> Result:
     return Result(tuple(fits), tuple(read))
 
 
-def _told_apart(tables: Sequence[ForceTable]) -> list[ForceTable]:
+def _distinct(tables: Sequence[ForceTable]) -> list[ForceTable]:
     """Tables of arrays that nobody named, by what they vary, else by their number; one that stands twice stays twice."""
     unnamed = f"{ARRAYS_NAME}/{ARRAYS_NAME}"
     nameless = [t for t in tables if t.name == unnamed]

@@ -12,7 +12,7 @@ from coeflab.motion.uncertainty.uncertainty import Carried
 from coeflab.study.estimated_vehicle import given_by, replaced
 from coeflab.study.run import run
 from coeflab.vehicle.merge import Merged
-from coeflab.vehicle.own_numbers import OwnNumber, own_numbers, stated_beside
+from coeflab.vehicle.own_numbers import OwnNumber, own_numbers, as_file
 from coeflab.vehicle.parameter_file import ParameterFile
 
 __all__ = ["Merge", "merge", "own_numbers"]
@@ -78,9 +78,7 @@ def merge(
     ["Yv'"]
     """
     by_hand = not isinstance(other, str)
-    second, own = (
-        given_by(other, first, run) if isinstance(other, str) else (stated_beside(first, other), first.scaling)
-    )
+    second, own = given_by(other, first, run) if isinstance(other, str) else (as_file(first, other), first.scaling)
     progress("merging, and moving what came out")
     result, moves, carried = replaced(first, second, name or f"{first.name}_merged", own, alone=by_hand)
     # a tow bears the name of its body, as the estimates do

@@ -7,7 +7,7 @@ from typing import Any, Protocol
 
 from coeflab.core.errors import InputError
 from coeflab.formats.model_files import OWN, read_model_file, read_vehicle_file
-from coeflab.vehicle.coefficient_list import beside_sheet, read_coefficient_list
+from coeflab.vehicle.coefficient_list import with_sheet, read_coefficient_list
 from coeflab.vehicle.conform import conform
 from coeflab.vehicle.force_law import EDGE, not_used
 from coeflab.vehicle.own_numbers import typed_file

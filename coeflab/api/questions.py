@@ -48,12 +48,12 @@ _SIDE = re.compile(r"\b(aft|astern|behind|forward|fwd|ahead)(?:\s+of)?\b", re.IG
 _AFT = ("aft", "astern", "behind")
 
 
-def settings_of(said: Mapping[str, Any]) -> dict[str, Setting]:
+def settings_of(given: Mapping[str, Any]) -> dict[str, Setting]:
     """Keywords as settings of a campaign; None says nothing.
 
     Parameters
     ----------
-    said : mapping of str to object
+    given : mapping of str to object
         By keyword.
 
     Raises
@@ -63,7 +63,7 @@ def settings_of(said: Mapping[str, Any]) -> dict[str, Setting]:
     """
     out: dict[str, Setting] = {}
     complaints: list[InputError] = []
-    for keyword, value in said.items():
+    for keyword, value in given.items():
         if value is None:
             continue
         try:

@@ -190,7 +190,7 @@ def read_tables(
     importer: str = "",
     options: Mapping[str, Any] | None = None,
     accept: bool = False,
-    **said: Any,
+    **keywords: Any,
 ) -> tuple[Table, ...]:
     """All tables of a workbook, a folder of runs or a campaign.
 
@@ -214,11 +214,11 @@ def read_tables(
     >>> [t.name for t in cf.read_tables("suboff_roddy_2")]
     ['suboff_roddy_2/table.csv']
     """
-    return tables_from(source, said, columns or {}, name, importer, options or {}, accept)
+    return tables_from(source, keywords, columns or {}, name, importer, options or {}, accept)
 
 
 def tables_from(
-    source: Any, said: Mapping[str, Any], columns: Mapping[str, str], name: str | None, importer: str,
+    source: Any, keywords: Mapping[str, Any], columns: Mapping[str, str], name: str | None, importer: str,
     options: Mapping[str, Any], accept: bool,
 ) -> tuple[Table, ...]:  # fmt: skip
     """The tables of anything that is one.
@@ -227,18 +227,18 @@ def tables_from(
     ----------
     source, columns, name, importer, options, accept
         As of `read_table`.
-    said : mapping of str to object
+    keywords : mapping of str to object
         Its other keywords; None says nothing.
     """
-    said = _keywords(said)
-    stated = {k: v for k, v in said.items() if v is not None}
+    keywords = _keywords(keywords)
+    stated = {k: v for k, v in keywords.items() if v is not None}
     if isinstance(source, ForceTable | PlannedTable):
         _require_nothing(stated, columns, "a table that was read")
         read = (source,) if isinstance(source, ForceTable) else reading.read_tables(source)
         return tuple(map(table_of, read))
     if isinstance(source, Mapping) or hasattr(source, "columns"):
         raw = raw_of_columns(source, f"<{name or 'table'}>")
-        return _filled_in((Part("", raw, ARRAYS, {}),), (), said, columns, identifier(name or "table"), accept)
+        return _filled_in((Part("", raw, ARRAYS, {}),), (), keywords, columns, identifier(name or "table"), accept)
     if not isinstance(source, str | Path):
         raise InputError(
             f"a {type(source).__name__}",
@@ -251,7 +251,7 @@ def tables_from(
         return tuple(map(table_of, reading.read_tables(reading.table_at(path))))
     parts, chosen = read_parts(path, importer, options)
     parts = with_shared_words(parts)
-    return _filled_in(parts, chosen, said, columns, identifier(name or path.resolve().stem), accept)
+    return _filled_in(parts, chosen, keywords, columns, identifier(name or path.resolve().stem), accept)
 
 
 def table_of(read: ForceTable) -> Table:
@@ -287,14 +287,14 @@ def _require_nothing(stated: Mapping[str, Any], columns: Mapping[str, str], what
 def _filled_in(
     parts: Sequence[Part],
     chosen: Sequence[Any],
-    said: Mapping[str, Any],
+    keywords: Mapping[str, Any],
     columns: Mapping[str, str],
     name: str,
     accept: bool,
 ) -> tuple[Table, ...]:
     """Raw tables, filled in by what is said; complaints about what nobody said."""
     source = str(parts[0].raw.path) if len(parts) == 1 else str(parts[0].raw.path.parent)
-    known = settings_of(said)
+    known = settings_of(keywords)
     maps = column_maps(columns, parts, "columns", 'columns["{name}"]', source, source)
     require_parts(known, parts)
     settings = {**assumed(Path(name)), **stated_together(parts), **known}
@@ -311,7 +311,7 @@ def _filled_in(
         raise in_keywords(why, source) from None
 
 
-def _keywords(said: Mapping[str, Any]) -> dict[str, Any]:
+def _keywords(keywords: Mapping[str, Any]) -> dict[str, Any]:
     """What is said by the names of the keywords; ``axes`` and ``unit``, as of `coeflab.read_body`, are ``frame`` and ``units``.
 
     Raises
@@ -321,7 +321,7 @@ def _keywords(said: Mapping[str, Any]) -> dict[str, Any]:
     """
     out: dict[str, Any] = {}
     complaints = []
-    for given, value in said.items():
+    for given, value in keywords.items():
         keyword = {"axes": "frame", "unit": "units"}.get(given, given)
         if keyword not in KEYS:
             near = SYMBOLS.get(given) or next(iter(get_close_matches(given, KEYS, 1)), "")

@@ -38,7 +38,7 @@ from coeflab.study.study import Plan
 from coeflab.vehicle.assemble import PlannedParameterFile, assemble
 from coeflab.vehicle.from_shape import Stated
 from coeflab.vehicle.merge import merged
-from coeflab.vehicle.own_numbers import OwnNumber, own_numbers, stated_beside, typed_surfaces, typed_thrusters
+from coeflab.vehicle.own_numbers import OwnNumber, own_numbers, as_file, typed_surfaces, typed_thrusters
 from coeflab.vehicle.parameter_file import ParameterFile
 from coeflab.vehicle.plausibility import plausibility
 from coeflab.vehicle.stability import DRAWS, INDICES, missing_for_stability, sense, stability
@@ -453,7 +453,7 @@ def vehicle(
         own = coefficients.tables[0].scaling if isinstance(coefficients, Result) and coefficients.tables else None
         base = merged(base, other, called, own).parameters
     if numbers:
-        base = merged(base, stated_beside(base, _read(numbers)), called, base.scaling).parameters
+        base = merged(base, as_file(base, _read(numbers)), called, base.scaling).parameters
     return Vehicle(base).equipped(rudder=rudder, stern_planes=stern_planes, bow_planes=bow_planes, thrusters=thrusters)
 
 

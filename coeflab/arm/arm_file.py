@@ -14,7 +14,7 @@ from coeflab.arm.chain import Base, Chain, Joint, Link, Strip
 from coeflab.arm.control import Controller
 from coeflab.arm.manoeuvres import PHASES, ordered
 from coeflab.arm.readers.arm import File
-from coeflab.arm.thrusters import Thruster, TorqueThruster, VoltageThruster, lost_directions, thruster_matrix
+from coeflab.arm.thrusters import Thruster, TorqueThruster, VoltageThruster, uncontrolled_directions, thruster_matrix
 from coeflab.bodies.closed_forms import ellipsoid_added_mass
 from coeflab.core import declarations as takes
 from coeflab.core.errors import shown
@@ -95,8 +95,8 @@ def read_arm(path: Path, manoeuvre: str = PHASES, options: Mapping[str, Any] | N
     assumed = [f"Displaced mass equals mass, as no volume is stated: {', '.join(neutral)}."] if neutral else []
     assumed += _hull_against_displaced(file.vehicle, rho)
     thrusters = tuple(_thruster(one, origin) for one in file.thruster)
-    if thrusters and (lost := lost_directions(thruster_matrix(thrusters))):
-        assumed.append(f"The thrusters make no {', no '.join(lost)}.")
+    if thrusters and (uncontrolled := uncontrolled_directions(thruster_matrix(thrusters))):
+        assumed.append(f"The thrusters make no {', no '.join(uncontrolled)}.")
     chain = Chain(
         name=file.body.name,
         base=_base(file.body.name, file.vehicle, rho),

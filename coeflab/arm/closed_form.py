@@ -51,23 +51,23 @@ class _Numbers:
     def __init__(self, symbols: bool) -> None:
         self.symbols, self.found = symbols, list[Parameter]()
 
-    def __call__(self, name: str, value: float, unit: str, said: str) -> Any:
+    def __call__(self, name: str, value: float, unit: str, meaning: str) -> Any:
         if not self.symbols or value == 0.0:
             return number(value)
-        self.found.append(Parameter(sp.Symbol(name), float(value), unit, said))
+        self.found.append(Parameter(sp.Symbol(name), float(value), unit, meaning))
         return self.found[-1].symbol
 
-    def vector(self, name: str, values: Array, said: str) -> Vector:
-        x, y, z = (self(f"{name}{axis}", float(v), "m", f"{said}, {axis}") for axis, v in zip("xyz", values))
+    def vector(self, name: str, values: Array, meaning: str) -> Vector:
+        x, y, z = (self(f"{name}{axis}", float(v), "m", f"{meaning}, {axis}") for axis, v in zip("xyz", values))
         return x, y, z
 
-    def square(self, name: str, values: Array, unit: str, said: str, marks: str = "xyz", other: str = "") -> Square:
+    def square(self, name: str, values: Array, unit: str, meaning: str, marks: str = "xyz", other: str = "") -> Square:
         """(3, 3); symmetric, and its entries above the diagonal stand twice, unless it couples two kinds of motion."""
         out = [[sp.S.Zero] * 3 for _ in range(3)]
         for i in range(3):
             for k in range(3) if other else range(i, 3):
                 at = f"{marks[i]}{(other or marks)[k]}"
-                out[i][k] = self(f"{name}{at}", float(values[i, k]), unit, f"{said}, {at}")
+                out[i][k] = self(f"{name}{at}", float(values[i, k]), unit, f"{meaning}, {at}")
                 if not other:
                     out[k][i] = out[i][k]
         return out

@@ -452,9 +452,9 @@ def simulated_sheet(motion: ArmMotion, trajectory: Trajectory) -> bytes:
     return sheet([[f] for f in figures])
 
 
-def _vehicle_figure(trajectory: Trajectory, kept: bool) -> Figure:
+def _vehicle_figure(trajectory: Trajectory, is_held: bool) -> Figure:
     """Place and attitude of the vehicle over time."""
-    t, scale, unit = trajectory.time, 1e3 if kept else 1.0, "mm" if kept else "m"
+    t, scale, unit = trajectory.time, 1e3 if is_held else 1.0, "mm" if is_held else "m"
     angles = np.degrees(trajectory.angles)
     plots = [
         Plot(
@@ -472,7 +472,7 @@ def _vehicle_figure(trajectory: Trajectory, kept: bool) -> Figure:
 # ---- a page that plays it ------------------------------------------------------------------------------------------
 
 
-def animation(motion: ArmMotion, title: str, said: str) -> bytes:
+def animation(motion: ArmMotion, title: str, description: str) -> bytes:
     """A page, HTML, that plays a motion in space; equal input gives equal bytes.
 
     Parameters
@@ -480,7 +480,7 @@ def animation(motion: ArmMotion, title: str, said: str) -> bytes:
     motion : ArmMotion
         Of more than 240 rows as many are shown, at equal distances.
     title : str
-    said : str
+    description : str
         What the motion is, in a sentence: read aloud in the place of the picture.
     """
     rows = np.unique(np.round(np.linspace(0, len(motion.time) - 1, min(FRAMES, len(motion.time)))).astype(int))
@@ -512,7 +512,7 @@ def animation(motion: ArmMotion, title: str, said: str) -> bytes:
     }  # fmt: skip
     text = json.dumps(data, separators=(",", ":"), allow_nan=False).replace("</", "<\\/")
     page = own_text(TEMPLATE)
-    for name, value in (("TITLE", escape(title)), ("SAID", escape(said)), ("DATA", text)):
+    for name, value in (("TITLE", escape(title)), ("SAID", escape(description)), ("DATA", text)):
         page = page.replace(f"@@{name}@@", value)
     return page.encode()
 

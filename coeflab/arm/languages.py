@@ -157,7 +157,7 @@ def c_files(form: ClosedForm, origin: Origin, stem: str) -> dict[str, str]:
             ),
             "typedef struct {",
         ]
-        words = [one_line(p.said).replace("*/", "* /") for p in form.parameters]
+        words = [one_line(p.meaning).replace("*/", "* /") for p in form.parameters]
         header += [f"    double {p.symbol.name}; /* {s}, {p.unit} */" for p, s in zip(form.parameters, words)]
         header += [f"}} {name}_parameters;", f"extern const {name}_parameters {name}_of_file;", ""]
         source += [f"const {name}_parameters {name}_of_file = {{"]
@@ -170,7 +170,7 @@ def c_files(form: ClosedForm, origin: Origin, stem: str) -> dict[str, str]:
         given = ", ".join(f"double\0{k}[{r}]" + (f"[{c}]" if c > 1 else "") for k, (r, c) in shapes.items())
         signature = f"void {name}_{function.name}({first}{taken}, {given})"
         units = "; ".join(f"{key} in {unit}" for key, (_, unit) in function.outputs.items())
-        header += [*_folded(f"/* {function.said} {units}. */", ""), *_folded(f"{signature};", ""), ""]
+        header += [*_folded(f"/* {function.meaning} {units}. */", ""), *_folded(f"{signature};", ""), ""]
         source += [*_folded(signature, ""), "{"]
         used = _used(function)
         source += [f"    const double {p} = of->{p};" for p in _parameters_of(form, used)]
@@ -256,7 +256,7 @@ def python_files(form: ClosedForm, origin: Origin, stem: str) -> dict[str, str]:
             "# Numbers of the file; every function takes such a dictionary as its last argument, of.",
             "PARAMETERS = {",
         ]
-        out += [f'    "{p.symbol.name}": {p.value!r},  # {one_line(p.said)}, {p.unit}' for p in form.parameters]
+        out += [f'    "{p.symbol.name}": {p.value!r},  # {one_line(p.meaning)}, {p.unit}' for p in form.parameters]
         out += ["}", ""]
     if any(len(line.names) > 1 for f in form.functions for line in f.lines):
         place, weight = _nodes()
@@ -268,7 +268,7 @@ def python_files(form: ClosedForm, origin: Origin, stem: str) -> dict[str, str]:
         more = ", of=PARAMETERS" if form.parameters else ""
         out += ["", "", f"def {function.name}({', '.join(function.arguments)}{more}):"]
         units = "; ".join(f"{key} in {unit}" for key, (_, unit) in function.outputs.items())
-        out += [*_folded(f'"""{function.said} {units}."""', "    ")]
+        out += [*_folded(f'"""{function.meaning} {units}."""', "    ")]
         out += ["    cos, sin, sqrt = (math.cos, math.sin, np.sqrt) if np.ndim(q) == 1 else (np.cos, np.sin, np.sqrt)"]
         shapes = ", ".join(f"np.shape({a})[1:]" for a in function.arguments)
         out += [f"    many = np.broadcast_shapes({shapes})"]
@@ -319,7 +319,7 @@ def octave_files(form: ClosedForm, origin: Origin, stem: str) -> dict[str, str]:
             *_comment(["Numbers of the file: the first argument of every function."], "% "),
             *head,
         ]
-        own += [f"    of.{p.symbol.name} = {p.value!r}; % {one_line(p.said)}, {p.unit}" for p in form.parameters]
+        own += [f"    of.{p.symbol.name} = {p.value!r}; % {one_line(p.meaning)}, {p.unit}" for p in form.parameters]
         files[f"{name}_parameters.m"] = "\n".join([*own, "end", ""])
     for function in form.functions:
         used = _used(function)
@@ -327,7 +327,7 @@ def octave_files(form: ClosedForm, origin: Origin, stem: str) -> dict[str, str]:
         taken = ", ".join((*(("of",) if form.parameters else ()), *function.arguments))
         units = "; ".join(f"{key} in {unit}" for key, (_, unit) in function.outputs.items())
         out = [f"function [{given}] = {name}_{function.name}({taken})"]
-        out += [*_comment([f"{function.said} {units}."], "% "), *head]
+        out += [*_comment([f"{function.meaning} {units}."], "% "), *head]
         out += [f"    {p} = of.{p};" for p in _parameters_of(form, used)]
         for a in function.arguments:
             symbols = [(f"{a}{k}", k) for k in range(1, form.length(a) + 1)]

@@ -78,11 +78,11 @@ def document(form: ClosedForm, head: Sequence[str]) -> str:
         for p in form.parameters:
             value = _Latex()._print_Float(p.value)
             out.append(
-                rf"\item ${in_letters(p.symbol.name)} = {value}$ {p.unit.translate(SPECIAL)}: {one_line(p.said).translate(SPECIAL)}"
+                rf"\item ${in_letters(p.symbol.name)} = {value}$ {p.unit.translate(SPECIAL)}: {one_line(p.meaning).translate(SPECIAL)}"
             )
         out += [r"\end{itemize}"]
     for function in form.functions:
-        out += [rf"\section*{{{function.name.replace('_', ' ').capitalize()}}}", function.said.translate(SPECIAL)]
+        out += [rf"\section*{{{function.name.replace('_', ' ').capitalize()}}}", function.meaning.translate(SPECIAL)]
         rows: list[tuple[str, str]] = []
         for one in function.lines:
             rows += _rows(one, printed)

@@ -19,7 +19,7 @@ from coeflab.motion.manoeuvre import Manoeuvre, Phase
 
 PHASES = "phases"
 FREE = 10.0  # s of free motion where no phase is given
-HELD, KEPT = "vehicle.held", "vehicle.kept"
+HELD, STATION = "vehicle.held", "vehicle.kept"
 
 
 @dataclass(frozen=True, slots=True)
@@ -123,9 +123,9 @@ def ordered(name: str, file: File, chain: Chain, options: Mapping[str, Any]) -> 
         phases = [(Phase("free motion", {HELD: 0.0}, o.lasts), "")]
     else:
         ways = _ways(name, o, file, chain)
-        phases = [(Phase(words, {KEPT: 1.0, **orders}, o.lasts), place) for words, orders, place in ways]
+        phases = [(Phase(words, {STATION: 1.0, **orders}, o.lasts), place) for words, orders, place in ways]
         if o.stays or not phases:
-            phases.append((Phase("stays", {KEPT: 1.0}, o.stays or o.lasts), ""))
+            phases.append((Phase("stays", {STATION: 1.0}, o.stays or o.lasts), ""))
     rates, velocity = file.rates(), np.array(file.start.velocity)
     if getattr(o, "rates", ""):
         rates = _listed("rates", o.rates, [DIMENSIONS[link.joint][1] for link in file.link])
@@ -149,7 +149,7 @@ def _options(name: str, given: Mapping[str, Any]) -> Any:
 def _orders(file: File, chain: Chain, one: ArmPhaseKeys) -> dict[str, float]:
     """Orders of a phase, by the names of joints and thrusters."""
     joints = [joint.name for joint in chain.joints]
-    orders = {HELD: float(one.vehicle == "held"), KEPT: float(one.vehicle == "kept")}
+    orders = {HELD: float(one.vehicle == "held"), STATION: float(one.vehicle == "kept")}
     orders |= dict(zip(joints, file.positions(one), strict=False))
     orders |= {f"{name}.torque": value for name, value in zip(joints, file.torques(one), strict=False)}
     orders |= {t.name: value for t, value in zip(chain.thrusters, file.commands(one), strict=False)}

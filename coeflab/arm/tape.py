@@ -40,13 +40,13 @@ class Parameter:
     symbol : sympy.Symbol
     value : float
         Of the file.
-    unit, said : str
+    unit, meaning : str
     """
 
     symbol: sp.Symbol
     value: float
     unit: str
-    said: str
+    meaning: str
 
 
 @brief
@@ -56,7 +56,7 @@ class Function:
 
     Attributes
     ----------
-    name, said : str
+    name, meaning : str
     arguments : tuple of str
         ``q``, ``s``, ``down``, ``current``, ``acceleration``.
     lines : tuple of Line
@@ -66,7 +66,7 @@ class Function:
     """
 
     name: str
-    said: str
+    meaning: str
     arguments: tuple[str, ...]
     lines: tuple[Line, ...]
     outputs: dict[str, tuple[sp.Matrix, str]]
@@ -197,7 +197,7 @@ class Tape:
         return (first[0], first[1], first[2]), (second[0], second[1], second[2])
 
     def function(
-        self, name: str, said: str, arguments: tuple[str, ...], outputs: dict[str, tuple[sp.Matrix, str]]
+        self, name: str, meaning: str, arguments: tuple[str, ...], outputs: dict[str, tuple[sp.Matrix, str]]
     ) -> Function:
         """What the outputs need, names that are used once put back where they are used."""
         uses: dict[Any, int] = {}
@@ -237,7 +237,7 @@ class Tape:
             put.update(zip(line.names, names, strict=True))
             selected.append(Line(names, of, line.stage))
         final = {key: (matrix.xreplace(put), what) for key, (matrix, what) in outputs.items()}
-        return Function(name, said, arguments, tuple(selected), final)
+        return Function(name, meaning, arguments, tuple(selected), final)
 
 
 def cross(a: Sequence[Any], b: Sequence[Any]) -> Vector:

@@ -204,7 +204,7 @@ def thruster_matrix(thrusters: Sequence[Thruster]) -> Array:
     return np.array(columns).reshape(-1, 6).T
 
 
-def lost_directions(matrix: Array) -> tuple[str, ...]:
+def uncontrolled_directions(matrix: Array) -> tuple[str, ...]:
     """Forces and moments that no thrusts make, in words; none of a matrix of rank six.
 
     Each row of Theta is scaled by its largest entry, so that units do not matter; what is lost is the space that its columns do not span.
@@ -213,25 +213,25 @@ def lost_directions(matrix: Array) -> tuple[str, ...]:
     scale = np.where(size > 0.0, size, 1.0)
     left, strength, _ = np.linalg.svd(matrix / scale[:, None])
     rank = int(np.sum(strength > SINGULAR * max(float(np.max(strength, initial=0.0)), SINGULAR)))
-    lost = left[:, rank:] / scale[:, None]
+    uncontrolled = left[:, rank:] / scale[:, None]
     out = []
     # Reduced to echelon form, so that a direction that is lost by itself stands by itself.
-    rows = _echelon(lost.T)
+    rows = _echelon(uncontrolled.T)
     for row in rows:
         selected = [k for k in range(6) if abs(row[k]) > 1e-6]
         out.append(DIRECTIONS[selected[0]] if len(selected) == 1 else _together(row, selected))
     return tuple(out)
 
 
-def _together(row: Array, kept: Sequence[int]) -> str:
+def _together(row: Array, selected: Sequence[int]) -> str:
     """Directions that come together alone, row times (X, Y, Z, K, M, N) being zero: "sway apart from yaw (N = 0.5 m Y)"."""
-    *others, last = kept
+    *others, last = selected
     terms = []
     for k in others:
         unit = " m" if k < 3 <= last else ""  # no moment stands before a force
         terms.append(f"{-row[k] / row[last]:+.3g}{unit} {LETTERS[k]}")
     words = " ".join(terms).removeprefix("+")
-    first, *rest = (DIRECTIONS[k] for k in kept)
+    first, *rest = (DIRECTIONS[k] for k in selected)
     return f"{first} apart from {' and '.join(rest)} ({LETTERS[last]} = {words})"
 
 
@@ -266,9 +266,9 @@ def thrust_allocation(thrusters: Sequence[Thruster]) -> Array:
             "no thrusters", "thrusters that make every force and moment", column="thruster", advice=NO_THRUSTERS_NEEDED
         )
     matrix = thruster_matrix(thrusters)
-    if lost := lost_directions(matrix):
+    if uncontrolled := uncontrolled_directions(matrix):
         raise InputError(
-            f"thrusters that make no {', no '.join(lost)}", "a thruster matrix of rank 6", column="thruster",
+            f"thrusters that make no {', no '.join(uncontrolled)}", "a thruster matrix of rank 6", column="thruster",
             advice=f"Add or turn a thruster. {NO_THRUSTERS_NEEDED}",
         )  # fmt: skip
     return np.asarray(np.linalg.pinv(matrix))

@@ -193,14 +193,14 @@ def near_walls(
         raise InputError(
             f"a density of {density:g} kg/m^3", f"a value above zero, at most {DENSEST:g}", column="density"
         )
-    near = beside_walls(body, density, wall, distances, given)
+    near = wall_sweep(body, density, wall, distances, given)
     far = ADDED_MASS.load("panel").added_mass(_original(body) or body, density, dict(given or {}))
     walls = tuple(NearWall(wall, d, n.matrix) for d, n in zip(sorted(set(distances)), near, strict=True))
     return replace(far, walls=walls), *near
 
 
 @one_thread()
-def beside_walls(
+def wall_sweep(
     body: Body, density: float, wall: str, distances: Sequence[float], given: Mapping[str, Any] | None = None
 ) -> tuple[AddedMass, ...]:
     """Added mass by the panel method at distances from a wall, rising; as `near_walls`.

@@ -161,7 +161,7 @@ class ConfigurationKeys(takes.Declaration):
             if doubt:
                 raise InputError(doubt, "the inertia of a body about its centre of gravity", column="inertia_matrix")
 
-    def made(self, prime: PrimeKeys | None, reference: Array, assumed: AssumedMassKeys | None = None) -> Configuration:
+    def build(self, prime: PrimeKeys | None, reference: Array, assumed: AssumedMassKeys | None = None) -> Configuration:
         """The configuration.
 
         Parameters
@@ -284,7 +284,7 @@ class MeasuredKeys(takes.Declaration):
         return Measured(name, self.values[symbol], self.citation, self.place)
 
     @property
-    def made(self) -> tuple[Measured, ...]:
+    def built(self) -> tuple[Measured, ...]:
         """One by one."""
         return tuple(map(self._one, self.values))
 
@@ -354,14 +354,14 @@ class BodyFile(takes.Declaration):
             raise InputError(found, "one [[configuration]] at least with inertia_prime", column="assumed_mass")
         for one in self.configuration:
             try:
-                one.made(self.prime, self.body.reference_point, self.assumed_mass)
+                one.build(self.prime, self.body.reference_point, self.assumed_mass)
             except InputError as why:
                 raise InputError(why.found, why.expected, column=f"assumed_mass.{why.column}") from None
 
-    def made(self, path: Path, shape: Shape | None = None, computed: tuple[Configuration, ...] = ()) -> Body:
+    def build(self, path: Path, shape: Shape | None = None, computed: tuple[Configuration, ...] = ()) -> Body:
         """The body; printed configurations follow those that were computed from the shape."""
         head = self.body
-        printed = tuple(c.made(self.prime, head.reference_point, self.assumed_mass) for c in self.configuration)
+        printed = tuple(c.build(self.prime, head.reference_point, self.assumed_mass) for c in self.configuration)
         return Body(
             name=head.name,
             title=head.title,
@@ -438,18 +438,18 @@ class ShapedBodyFile(BodyFile):
             foils = tuple(foil.name for foil in outline_of(shape).foils)
         for i, one in enumerate(self.control):
             try:
-                controls.append(one.made(pieces, foils))
+                controls.append(one.build(pieces, foils))
             except InputError as why:
                 raise read_toml(path).fail(f"control[{i}].{why.column}", why.found, why.expected) from None
         model = self._weighed(path, computed, pieces)
         if model is not None:
             computed = replace(computed, mass=model.properties(self.body.reference_point))
         return replace(
-            self.made(path, shape, (computed,)),
+            self.build(path, shape, (computed,)),
             mass_model=model,
             scaling=self.prime and self.prime.scaling,
-            measured=tuple(m for s in self.measured for m in s.made),
-            thrusters=tuple(t.made for t in self.thruster),
+            measured=tuple(m for s in self.measured for m in s.built),
+            thrusters=tuple(t.built for t in self.thruster),
             pieces=pieces,
             controls=tuple(controls),
             outlined=None if outlined is None else cache(partial(outlined, tuple(controls))),

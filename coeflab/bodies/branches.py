@@ -56,7 +56,7 @@ def parted(bits: list[Bit], origin: Array, way: Array) -> tuple[list[Bit], list[
     origin, way = _middle(bits, origin, way)
     across = np.array([-way[1], way[0]])
     trunk: list[Bit] = []
-    beside: list[list[Bit]] = []
+    neighbours: list[list[Bit]] = []
     half: dict[float, float] = {}
     for k, bit in enumerate(bits):
         s = (bit.points - origin) @ way
@@ -65,7 +65,7 @@ def parted(bits: list[Bit], origin: Array, way: Array) -> tuple[list[Bit], list[
         )
         own = float(np.percentile(widths, OWN, method="lower"))
         half[bit.x] = MARGIN * own / 2.0
-        beside.append([])
+        neighbours.append([])
         aside = np.abs((bit.points - origin) @ across)
         if own <= 0.0 or 2.0 * aside.max() <= WIDER * own:
             trunk.append(bit)
@@ -76,8 +76,8 @@ def parted(bits: list[Bit], origin: Array, way: Array) -> tuple[list[Bit], list[
             one = Bit(bit.x, piece, bit.inscribed, step=k)
             t = np.abs((one.points - origin) @ across)
             if t.max() - half[bit.x] > 2.0 * half[bit.x] / MARGIN:
-                beside[-1].append(one)
-    found = [merged(c) for c in clusters_of(beside)]
+                neighbours[-1].append(one)
+    found = [merged(c) for c in clusters_of(neighbours)]
     branches = [_branch(c, origin, way, across, half) for c in found if len(c) >= FEWEST]
     return (trunk, branches) if branches else (bits, [])
 

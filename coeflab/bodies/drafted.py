@@ -96,11 +96,12 @@ def _controls(foils: Sequence[Foil], middle: float, nothing: float) -> str:
         "# Fins that were found, as parts of a [[control]]: x of the quarter chord of the root, its chord, exposed span, m."
     ]
     lines += [
-        f"#   {f.name}: x = {f.root[0]:.4g}, chord {f.root_chord:.3g}, span {f.span:.3g}, {_stands(f)}" for f in foils
+        f"#   {f.name}: x = {f.root[0]:.4g}, chord {f.root_chord:.3g}, span {f.span:.3g}, {_where_on_hull(f)}"
+        for f in foils
     ]
     for name, (way, axis, sense) in CONTROLS.items():
         tail = [f for f in foils if f.root[0] < middle]
-        mine, oblique = ([f for f in tail if _stands(f) == w] for w in (way, "oblique"))
+        mine, oblique = ([f for f in tail if _where_on_hull(f) == w] for w in (way, "oblique"))
         groups = ([(mine, axis)] if mine else []) + [([f], _along_span(f, name)) for f in oblique]
         for k, (fins, hinge) in enumerate(groups):
             lines += _control(name, fins, hinge, sense, nothing, first=k == 0)
@@ -131,7 +132,7 @@ def _along_span(foil: Foil, control: str) -> str:
     return f"[0.0, {y:.5g}, {z:.5g}]"
 
 
-def _stands(foil: Foil) -> str:
+def _where_on_hull(foil: Foil) -> str:
     across, rise = np.abs((foil.tip - foil.root)[1:])
     return "upright" if rise > UPRIGHT * across else "level" if across > UPRIGHT * rise else "oblique"
 

@@ -15,7 +15,7 @@ from coeflab.core.types import Array
 
 SLIT = 0.1  # of both pieces together, along the slit's normal
 FEWEST = 3  # stations
-ALIKE, BESIDE = 0.95, 0.5  # cosine between their directions; of the shorter one, which lies beside the other
+ALIKE, OVERLAP = 0.95, 0.5  # cosine between their directions; of the shorter one, which lies beside the other
 
 Way = Callable[[list[Bit]], tuple[Array, Array]]
 
@@ -62,7 +62,7 @@ def _one_plane(a: list[Bit], b: list[Bit], way_of: Way) -> bool:
     if (
         len(a) < FEWEST
         or len(b) < FEWEST
-        or not (_beside(chords, SLIT, narrow=True) or _beside(chords, BESIDE, narrow=False))
+        or not (_adjacent(chords, SLIT, narrow=True) or _adjacent(chords, OVERLAP, narrow=False))
     ):
         return False
     points = [np.concatenate([bit.points for bit in c]) for c in (a, b)]
@@ -77,12 +77,12 @@ def _one_plane(a: list[Bit], b: list[Bit], way_of: Way) -> bool:
     heights = [(p - origin) @ way for p in points]
     along = [(float(h.min()), float(h.max())) for h in heights]
     return any(
-        _beside(one, SLIT, narrow=True) and _beside(two, BESIDE, narrow=False)
+        _adjacent(one, SLIT, narrow=True) and _adjacent(two, OVERLAP, narrow=False)
         for one, two in ((along, chords), (chords, along))
     )
 
 
-def _beside(ranges: Sequence[tuple[float, float]], share: float, narrow: bool) -> bool:
+def _adjacent(ranges: Sequence[tuple[float, float]], share: float, narrow: bool) -> bool:
     """``narrow``: one range ends where the other begins, but for a slit; else they share most of the shorter one."""
     (low, high), (first, last) = ranges
     common = min(high, last) - max(low, first)

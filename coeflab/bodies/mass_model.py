@@ -43,7 +43,7 @@ class MassPart:
 
     Attributes
     ----------
-    name, made_of : str
+    name, material : str
     mass : float
         kg.
     centre : (3,) array
@@ -59,7 +59,7 @@ class MassPart:
     """
 
     name: str
-    made_of: str
+    material: str
     mass: float
     centre: Array
     inertia: Array
@@ -211,7 +211,7 @@ class MassModel:
         rows = [
             (
                 p.name,
-                p.made_of,
+                p.material,
                 number(p.mass, 4) if p.u95 is None else with_u95(p.mass, p.u95)[0],
                 "" if p.u95 is None else number(p.u95, 2),
                 *map(_place, p.centre),
@@ -252,7 +252,7 @@ class MassModel:
             "volume": self.volume,
             "centre_of_buoyancy": self.centre_of_buoyancy.tolist(),
             "parts": [
-                {"name": p.name, "made_of": p.made_of, "mass": p.mass, "u95": p.u95, "point": p.centre.tolist(), "inertia": p.inertia.tolist(),
+                {"name": p.name, "made_of": p.material, "mass": p.mass, "u95": p.u95, "point": p.centre.tolist(), "inertia": p.inertia.tolist(),
                  "density": p.mass / p.volume if p.volume else None, "flooded": p.flooded}
                 for p in self.parts
             ],
@@ -518,7 +518,7 @@ def _weighed(part: MassPart, mass: float, keys: MassKeys) -> MassPart:
         turn = rotation(*keys.rotation)
         own = mass * turn @ np.diag(result(*keys.sizes).spread) @ turn.T
         inertia = np.trace(own) * np.eye(3) - own
-    return MassPart(part.name, part.made_of, mass, part.centre, inertia, part.volume, part.u95)
+    return MassPart(part.name, part.material, mass, part.centre, inertia, part.volume, part.u95)
 
 
 def _require_apart(keys: Sequence[MassKeys]) -> None:

@@ -75,7 +75,7 @@ def way_of(bits: list[Bit], stand: Array) -> tuple[Array, Array]:
     return way, stand + middle - (middle @ way) * way
 
 
-def stands_out(bit: Bit, cores: list[Bit]) -> bool:
+def protrudes(bit: Bit, cores: list[Bit]) -> bool:
     """It reaches further from its hull than it is wide at its foot; a corner that the opening rounded does not."""
     skin = SKIN * bit.inscribed
     core = max(cores, key=lambda c: float((grown(bit.polygon, 3.0 * skin) ^ c.polygon).area()), default=None)

@@ -23,7 +23,7 @@ INNER, OUTER = 1.0 / 6.0, 1.0 / 2.0
 WEIGHTS = np.array([-0.8, 0.45, 0.45, 0.45, 0.45])
 SILHOUETTE = 5e-3  # of its area: what facets of a round body leave between it and its mirror image
 ON_PLANE, PAIRED = 1e-4, 0.03  # of the length: a point on a plane; foils of a mesh that are a pair
-KEPT = 8
+CACHED = 8
 
 Planes = tuple[bool, bool, bool]
 
@@ -119,7 +119,7 @@ def _figure(part: Part) -> tuple[str, float, Array, Array, Array]:
     return type(part.form).__name__, part.form.volume, part.centre, part.second_moments, part.middle - part.centre
 
 
-@lru_cache(KEPT)
+@lru_cache(CACHED)
 def silhouettes(mesh: TriangleMesh) -> Array:
     """(3,) areas that the body hides along x, y and z, m^2: what lies behind something else counts once."""
     views = [np.eye(3)[[i, j]] for i, j in ((1, 2), (2, 0), (0, 1))]
@@ -127,7 +127,7 @@ def silhouettes(mesh: TriangleMesh) -> Array:
     return np.array([mesh_outline(mesh.vertices, faces, view).area() for view in views])
 
 
-@lru_cache(KEPT)
+@lru_cache(CACHED)
 def mirror_planes(shape: Shape) -> Planes:
     """Whether a solid equals its image in x, in y and in z, each through its centre of volume.
 

@@ -78,7 +78,7 @@ class Foil:
         Chord of the part that turns, over the whole chord; 1 turns all of it.
     sign : float
         Turn about the root-to-tip direction for one unit of that angle, right-handed.
-    beside : tuple of (str, float)
+    other_controls : tuple of (str, float)
         Further angles that turn it, as those of an X tail do, each with its sign.
     """
 
@@ -92,12 +92,12 @@ class Foil:
     control: str = ""
     flap: float = 1.0
     sign: float = 1.0
-    beside: tuple[tuple[str, float], ...] = ()
+    other_controls: tuple[tuple[str, float], ...] = ()
 
     @property
     def turns(self) -> tuple[tuple[str, float], ...]:
         """Every angle that turns it, with its sign."""
-        return ((self.control, self.sign), *self.beside) if self.control else ()
+        return ((self.control, self.sign), *self.other_controls) if self.control else ()
 
     @property
     def span(self) -> float:

@@ -179,8 +179,8 @@ def with_controls(foils: Iterable[Foil], controls: Iterable[Control]) -> tuple[t
             turns[one.name] = sign
             if abs(sign) < OWN_SPAN:
                 aside.setdefault(one.name, []).append(f"{foil.name} by {abs(sign):.2f}")
-        (name, sign), *beside = turns.items() or (("", 1.0),)
-        result.append(replace(foil, control=name, sign=sign, beside=tuple(beside)) if turns else foil)
+        (name, sign), *other_controls = turns.items() or (("", 1.0),)
+        result.append(replace(foil, control=name, sign=sign, other_controls=tuple(other_controls)) if turns else foil)
     left += [
         f"all of a turn by {name}, whose axis is not along the span: it turns {', '.join(parts)} of the angle; a [[control]] "
         f"{name} a fin, with its axis along the span, turns it by all"

@@ -180,7 +180,7 @@ class ControlKeys(takes.Declaration):
         if not np.linalg.norm(self.axis) > 0.0:
             raise InputError("an axis without a direction", "[x, y, z], one of them not zero", column="axis")
 
-    def made(self, pieces: tuple[Piece, ...], foils: tuple[str, ...] = ()) -> Control:
+    def build(self, pieces: tuple[Piece, ...], foils: tuple[str, ...] = ()) -> Control:
         """The control of a body of these pieces.
 
         Parameters

@@ -40,7 +40,7 @@ from coeflab.bodies.mesh_appendages import (
     bluff_of,
     branched,
     edges_of,
-    stands_out,
+    protrudes,
     way_of,
 )
 from coeflab.bodies.mirror_planes import PAIRED, mirror_planes, silhouettes, unpaired
@@ -50,7 +50,7 @@ from coeflab.bodies.pieces import HULL, Control
 from coeflab.bodies.shape import Parts, Revolution, Shape
 from coeflab.core.types import Array
 
-KEPT = 8
+CACHED = 8
 STATIONS, FINE = 96, 64  # along the body; along each group of appendages
 INSIDE = 1e-5  # of the length: where the end faces are cut
 MAIN, SHARE = 0.25, 0.7  # inscribed radius of a hull over the largest; volume that is recognised
@@ -63,7 +63,7 @@ MOST_HULLS, MOST_CLUSTERS = 4, 40  # more is a frame
 BENT = 0.25  # half the surface over the planform, less one: it is not flat
 
 
-@lru_cache(KEPT)
+@lru_cache(CACHED)
 def outline_of(shape: Shape, controls: tuple[Control, ...] = ()) -> Outline:
     """What semi-empirical methods see of a shape.
 
@@ -268,7 +268,7 @@ def _counts(cluster: list[Bit], tracks: list[list[Bit]], cores: list[list[Bit]])
     """Large enough, and it stands out of its hull where it is largest."""
     largest = max(cluster, key=lambda bit: float(bit.polygon.area()))
     track = _own_track(cluster, tracks)
-    if not stands_out(largest, cores[largest.step]):
+    if not protrudes(largest, cores[largest.step]):
         return False
     size = max(float(np.linalg.norm(np.ptp(b.points, axis=0))) for b in cluster)
     return size > SMALL * max(b.inscribed for b in track)

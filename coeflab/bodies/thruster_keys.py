@@ -96,7 +96,7 @@ class PropellerKeys(takes.Declaration):
                 raise InputError(f"{value:g}", f"{low:g} to {high:g}, as the Wageningen B-series has it", column=name)
 
     @property
-    def made(self) -> Screw:
+    def built(self) -> Screw:
         """The same as a noun."""
         return Screw(self.diameter, self.blades, self.pitch_ratio, self.area_ratio, self.highest_rpm, self.open_water)
 
@@ -223,10 +223,10 @@ class ThrusterKeys(takes.Declaration):
             raise InputError("an axis without a direction", "[x, y, z], one of them not zero", column="tilt_axis")
 
     @property
-    def made(self) -> Thruster:
+    def built(self) -> Thruster:
         """With axes of length one."""
         axis = np.asarray(self.axis) / np.linalg.norm(self.axis)
-        screw = None if self.propeller is None else self.propeller.made
+        screw = None if self.propeller is None else self.propeller.built
         squares: tuple[Squares, ...] = ()
         torque: tuple[Squares, ...] = ()
         if self.bollard is not None and self.rate is not None:

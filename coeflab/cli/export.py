@@ -52,7 +52,7 @@ def command(
     parameters = vehicle.file
     if not json:
         show.not_used(parameters)
-    result, refused = _made(parameters, targets, file, accelerations, accept_loss, strict, json)
+    result, refused = _exports(parameters, targets, file, accelerations, accept_loss, strict, json)
     found = vehicle.checks
     if not json and not show.whole() and any(one.loss is not None for one in result):
         show.text("Differences force by force: the .loss.txt beside the files, or --wide.")
@@ -87,7 +87,7 @@ def named(to: Sequence[str]) -> list[str]:
     return list(dict.fromkeys(word for text in to for word in text.replace(",", " ").split()))
 
 
-def _made(
+def _exports(
     parameters: ParameterFile, targets: Sequence[str], file: Path, accelerations: str, accept_loss: bool, strict: bool,
     json: bool,
 ) -> tuple[list[Export], list[tuple[str, InputError]]]:  # fmt: skip
@@ -126,46 +126,46 @@ def _made(
     return result, refused
 
 
-def _print_loss(made: Export, parameters: ParameterFile) -> None:
+def _print_loss(result: Export, parameters: ParameterFile) -> None:
     from coeflab.api.exporting import loss_tables as tables
     from coeflab.api.exporting import without_law
 
-    loss = made.loss
+    loss = result.loss
     if loss is None:
         return
     whole = (
-        f"{made.target} holds all of {parameters.name}."
-        if made.lossless
-        else f"{made.target} does not hold all of {parameters.name}:"
+        f"{result.target} holds all of {parameters.name}."
+        if result.lossless
+        else f"{result.target} does not hold all of {parameters.name}:"
     )
-    show.text(whole + ("" if made.lossless else f" {tables.in_short(loss)}."))
+    show.text(whole + ("" if result.lossless else f" {tables.in_short(loss)}."))
     for words in without_law(parameters):
         show.sentence(f"The file has {words}.")
     if not show.whole():
         return
     show.text()
     show.table(tables.forces(loss))
-    show.table(tables.at_points(loss.at_points, f"Force law of {made.target}", controls=False))
+    show.table(tables.at_points(loss.at_points, f"Force law of {result.target}", controls=False))
     if not parameters.measured:
         show.text("The parameter file has no measured points to compare the law with.")
     show.table(tables.parts(parameters, loss.water))
 
 
-def _refusal(made: Export, parameters: ParameterFile, file: Path, strict: bool, target: str) -> InputError:
+def _refusal(result: Export, parameters: ParameterFile, file: Path, strict: bool, target: str) -> InputError:
     from coeflab.api.exporting import refusal
 
     expected = "a target that holds everything" if strict else "--accept-loss, to write the rest"
-    why = refusal(made, parameters, expected, WITH_MASS, target)
+    why = refusal(result, parameters, expected, WITH_MASS, target)
     return type(why)(why.found, why.expected, file=file, advice=why.advice)
 
 
-def _placed(made: Sequence[Export], file: Path, out: Path | None, several: bool) -> dict[Path, bytes]:
+def _placed(result: Sequence[Export], file: Path, out: Path | None, several: bool) -> dict[Path, bytes]:
     """Files of every export by path; several in one folder have folders of their own where two want the same name."""
     from coeflab.core.wording import file_stem
 
-    crowded = max(Counter(name for one in made for name in one.files).values(), default=0) > 1
+    crowded = max(Counter(name for one in result for name in one.files).values(), default=0) > 1
     files: dict[Path, bytes] = {}
-    for one in made:
+    for one in result:
         folder = file.parent / (one.folder or f"{file_stem(one.parameters)}.{one.target}") if out is None else out
         if several and crowded and out is not None:
             folder /= one.target

@@ -131,13 +131,13 @@ def further(arguments: list[str]) -> dict[str, int | float | str]:
     return out
 
 
-def _only(told: dict[str, Any], symbols: list[str]) -> dict[str, Any]:
+def _only(content: dict[str, Any], symbols: list[str]) -> dict[str, Any]:
     """The object of a study with nothing but the wanted coefficients, where any are."""
     from coeflab.api.names import primed
 
     named = set(map(primed, symbols))
     parts = ("coefficients", "comparisons") if named else ()
-    return told | {part: [c for c in told[part] if c["symbol"] in named] for part in parts}
+    return content | {part: [c for c in content[part] if c["symbol"] in named] for part in parts}
 
 
 def _refuse_strange(study: Study, symbols: list[str]) -> None:
@@ -204,7 +204,7 @@ def _print(study: Study, symbols: list[str]) -> None:
     found = tables.headline(study, symbols) or " ".join(oscillation_tables.headline(f) for f in study.fits)
     found = found or " ".join(tables.resistances(study))
     show.sentence(" ".join(filter(None, (found, tables.primed_about(study)))))
-    for line in (*tables.lost_by_move(study), *tables.answers(study)):
+    for line in (*tables.undetermined_by_move(study), *tables.answers(study)):
         show.sentence(line)
     if symbols:
         _of_symbols(study, symbols)

@@ -190,7 +190,7 @@ def _first_slopes(folder: Path) -> bool:
         notes += [
             *tables.resistances(study),
             tables.primed_about(study),
-            *tables.lost_by_move(study),
+            *tables.undetermined_by_move(study),
             *tables.answers(study),
         ]
         heading = "First coefficients" if any(f.straight for f in study.fits) else "First slopes"

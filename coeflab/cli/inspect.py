@@ -146,9 +146,9 @@ def _raw(table: str, importer: str, option: Sequence[str], json: bool, given: Se
             as_json(part.raw, part.importer, found.proposals, found.shows) | ({"name": part.name} if part.name else {})
             for part, found in zip(parts, founds, strict=True)
         ]
-        told = every[0] if len(every) == 1 else {"path": str(path), "tables": every}
+        content = every[0] if len(every) == 1 else {"path": str(path), "tables": every}
         proposed = [{"key": one.key, "value": one.value, "about": one.about} for one in draft.chosen]
-        show.json_object(told | {"proposed": proposed, "missing": missing, "next": following})
+        show.json_object(content | {"proposed": proposed, "missing": missing, "next": following})
         return
     brief = path.is_dir() and not show.whole()
     for part, found in zip(parts, founds, strict=True):

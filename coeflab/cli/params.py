@@ -137,7 +137,7 @@ def new(
     import shlex
 
     from coeflab.api.importing import options_of
-    from coeflab.api.parameters import beside_sheet, plausibility, read_coefficient_list, typed_file
+    from coeflab.api.parameters import with_sheet, plausibility, read_coefficient_list, typed_file
     from coeflab.core.errors import InputError, OutputError
     from coeflab.core.files import typed, write_all
     from coeflab.core.wording import file_stem
@@ -150,7 +150,7 @@ def new(
         stern_planes=stern_planes, bow_planes=bow_planes,
     )  # fmt: skip
     if sheet is not None and from_ is not None:
-        result = beside_sheet(result, sheet, from_)
+        result = with_sheet(result, sheet, from_)
     if file_stem(name) != name:
         raise InputError(f'"{name}"', "a name that a file can have: letters, digits, _ and -", column="NAME")
     path = typed(out) / f"{name}.parameters.json"

@@ -136,10 +136,10 @@ def _moved(study: Study) -> None:
         show.table(Table("Simulated manoeuvres", headers, tuple(rows), notes, frozenset({0, 1, 2, 4, 5})))
 
 
-def _why(made: Simulation) -> str:
+def _why(result: Simulation) -> str:
     """Why a manoeuvre has no quantity with a value."""
-    found = next(iter(made.figures), None)
-    return made.trajectory.ended.value if found is None else found.why or found.status
+    found = next(iter(result.figures), None)
+    return result.trajectory.ended.value if found is None else found.why or found.status
 
 
 def answered(found: Answer) -> None:

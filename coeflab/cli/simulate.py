@@ -96,8 +96,8 @@ def command(
     else:
         _print(result, written)
         if any(c.u95 for c in parameters.coefficients):
-            kept = ["--free", free] * bool(free) + ["--hold", hold] * bool(hold)
-            words = [str(file), "--manoeuvre", manoeuvre, *kept, *ctx.args]
+            frozen = ["--free", free] * bool(free) + ["--hold", hold] * bool(hold)
+            words = [str(file), "--manoeuvre", manoeuvre, *frozen, *ctx.args]
             show.command_line("How sure, and why", f"coeflab uncertainty {shlex.join(words)}")
         show.text()
     if not json:
@@ -188,36 +188,36 @@ def current_of(text: str) -> dict[str, float]:
     return {"north": north, "east": east, "down": down}
 
 
-def _print(made: Simulation, written: list[Path]) -> None:
+def _print(result: Simulation, written: list[Path]) -> None:
     from coeflab.api.parameters import EDGE
     from coeflab.core.texts import remark
     from coeflab.report.tables.motion import figure_table
 
-    name = f"{made.manoeuvre.name.replace('_', ' ')} of {made.vehicle.name}"
-    show.table(figure_table(made.figures, name, made.vehicle.length))
-    shown_first = {remark(f) for f in made.vehicle.findings if f.code != EDGE}
-    for line in (*made.vehicle.afloat, *(s for s in made.statements if s not in shown_first)):
+    name = f"{result.manoeuvre.name.replace('_', ' ')} of {result.vehicle.name}"
+    show.table(figure_table(result.figures, name, result.vehicle.length))
+    shown_first = {remark(f) for f in result.vehicle.findings if f.code != EDGE}
+    for line in (*result.vehicle.afloat, *(s for s in result.statements if s not in shown_first)):
         show.text(f"  {line}")
-    if made.trajectory.why:
-        show.text(f"  {made.trajectory.ended.value}: {made.trajectory.why}")
+    if result.trajectory.why:
+        show.text(f"  {result.trajectory.ended.value}: {result.trajectory.why}")
     for path in written:
         show.path(path)
 
 
-def _write(made: Simulation, folder: Path, to: str) -> list[Path]:
+def _write(result: Simulation, folder: Path, to: str) -> list[Path]:
     from coeflab.core.files import write_all
     from coeflab.report.figures.motion import motion_figures
     from coeflab.report.figures.svg import sheet
     from coeflab.report.tables.motion import motion_csv, motion_parquet
 
-    name = made.manoeuvre.name
+    name = result.manoeuvre.name
     try:
-        table = motion_csv(made.trajectory) if to == "csv" else motion_parquet(made.trajectory)
+        table = motion_csv(result.trajectory) if to == "csv" else motion_parquet(result.trajectory)
     except ImportError:
         raise InputError(
             "--to parquet without pyarrow", "the extra", column="--to", advice='pip install "coeflab[parquet]"'
         ) from None
-    rows = [(f,) for f in motion_figures(made.trajectory.until(made.determined), name, made.vehicle.length)]
-    content = {f"{name}.{to}": table, **({f"{name}.svg": sheet(rows, made.vehicle.water.source)} if rows else {})}
+    rows = [(f,) for f in motion_figures(result.trajectory.until(result.determined), name, result.vehicle.length)]
+    content = {f"{name}.{to}": table, **({f"{name}.svg": sheet(rows, result.vehicle.water.source)} if rows else {})}
     write_all(folder, content)
     return [folder / file for file in content]

@@ -75,18 +75,18 @@ def command(
     ]  # fmt: skip
     states = also.replace(",", " ").split()
     models = [linear_model(t, states, lags) if wanted and t.point.outcome.solved else None for t in each]
-    made = [m for m in models if m is not None]
+    solved = [m for m in models if m is not None]
     folder, names = out or Path(), {}
-    if out is not None and made:
+    if out is not None and solved:
         at = [v for v, m in zip(speeds, models, strict=True) if m is not None] if several else []
-        names = write_all(folder, schedule_files(at, made) if several else files(made[0]))
+        names = write_all(folder, schedule_files(at, solved) if several else files(solved[0]))
     if json:
         objects = [
             {**as_json(t), **({} if m is None else {"linear": linear_as_json(m)})}
             for t, m in zip(each, models, strict=True)
         ]
         whole = {"speeds": objects} if several else objects[0]
-        show.json_object({**whole, **({"files": [str(folder / n) for n in names]} if made else {})})
+        show.json_object({**whole, **({"files": [str(folder / n) for n in names]} if solved else {})})
     else:
         if several:
             show.table(schedule_table(speeds, each, models))

@@ -77,35 +77,35 @@ def command(
         raise typer.Exit(1)
 
 
-def _print(made: Carried, written: list[Path]) -> None:
+def _print(result: Carried, written: list[Path]) -> None:
     from coeflab.report.tables import uncertainty as uncertainty_tables
 
-    if made.undetermined:
-        name = f"{made.question.manoeuvre.replace('_', ' ')} of {made.vehicle}"
+    if result.undetermined:
+        name = f"{result.question.manoeuvre.replace('_', ' ')} of {result.vehicle}"
         show.text(f"No quantity of the {name} has a value, so that none has an interval; no draw was run.")
-        show.text(made.undetermined)
+        show.text(result.undetermined)
         show.text()
-    show.table(uncertainty_tables.spread_table(made))
-    for found in made.importances:
+    show.table(uncertainty_tables.spread_table(result))
+    for found in result.importances:
         show.table(uncertainty_tables.share_table(found))
-    show.table(uncertainty_tables.known_table(made))
-    show.table(uncertainty_tables.tests_table(made))
-    for line in (*uncertainty_tables.ranking(made), *made.statements):
+    show.table(uncertainty_tables.known_table(result))
+    show.table(uncertainty_tables.tests_table(result))
+    for line in (*uncertainty_tables.ranking(result), *result.statements):
         show.text(f"  {line}")
     for path in written:
         show.path(path)
 
 
-def _write(made: Carried, folder: Path) -> list[Path]:
+def _write(result: Carried, folder: Path) -> list[Path]:
     from coeflab.core.files import write_all
     from coeflab.report.figures.svg import sheet
     from coeflab.report.figures.uncertainty import uncertainty_figures
     from coeflab.report.tables.uncertainty import members_csv
 
-    name = made.question.manoeuvre
-    content = {f"{name}_members.csv": members_csv(made)}
-    figures = uncertainty_figures(made)
+    name = result.question.manoeuvre
+    content = {f"{name}_members.csv": members_csv(result)}
+    figures = uncertainty_figures(result)
     if figures:
-        content[f"{name}_uncertainty.svg"] = sheet(figures, made.water.source)
+        content[f"{name}_uncertainty.svg"] = sheet(figures, result.water.source)
     write_all(folder, content)
     return [folder / file for file in content]

@@ -134,9 +134,9 @@ def _print(study: Study, folder: Path, names: list[str], changed: int, home: str
     show.command_line("Next", f"coeflab merge {place} CAMPAIGN")
 
 
-def _on_draft(folder: Path, draft: Mapping[str, bytes], kept: bool) -> str:
+def _on_draft(folder: Path, draft: Mapping[str, bytes], unchanged: bool) -> str:
     """What became of the body.toml of a bare mesh."""
-    if kept:
+    if unchanged:
         return f"{folder / 'body.toml'} was edited and is kept, with the unit and axes that it states; coeflab vehicle {folder} takes it"
     held = "the fins that were found, rudder and thruster to complete"
     return f"{folder / next(iter(draft))}: {held}; then coeflab vehicle {folder}" if draft else ""
@@ -145,7 +145,7 @@ def _on_draft(folder: Path, draft: Mapping[str, bytes], kept: bool) -> str:
 def summarise(study: Study, folder: Path) -> None:
     """The answer first, then estimates, motions, what is missing and what is assumed."""
     from coeflab.report.sections import estimates as tables
-    from coeflab.report.tables.added_mass import near_walls_kept
+    from coeflab.report.tables.added_mass import near_walls_table
 
     shape, parameters = study.shape, next(iter(study.parameter_files.values()))
     if shape is None:
@@ -157,7 +157,7 @@ def summarise(study: Study, folder: Path) -> None:
     show.table(tables.manoeuvre_table(study.manoeuvres, shape.carried))
     show.table(tables.particulars_table(shape, parameters.added_mass))
     if parameters.added_mass is not None and parameters.added_mass.walls:
-        show.table(near_walls_kept(parameters.added_mass))
+        show.table(near_walls_table(parameters.added_mass))
     if all(e.parameters in study.parameter_files for e in study.exports):
         _exported(study, folder)
     for line in shape.missing:

@@ -145,7 +145,7 @@ class Declaration:
     def __get_pydantic_core_schema__(cls, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
         from pydantic_core import core_schema
 
-        def made(value: Any, inner: core_schema.ValidatorFunctionWrapHandler) -> Any:
+        def construct(value: Any, inner: core_schema.ValidatorFunctionWrapHandler) -> Any:
             value = {_attribute(k): v for k, v in value.items()} if isinstance(value, dict) else value
             try:
                 out = inner(value)
@@ -156,7 +156,7 @@ class Declaration:
 
         bare: Any = dict(handler.resolve_ref_schema(handler(source)))
         name = bare.pop("ref")  # a second use of the class refers to what has the name: it has to be checked as well
-        return core_schema.no_info_wrap_validator_function(made, bare, ref=name)
+        return core_schema.no_info_wrap_validator_function(construct, bare, ref=name)
 
     @classmethod
     def __get_pydantic_json_schema__(cls, core: CoreSchema, handler: GetJsonSchemaHandler) -> dict[str, Any]:

@@ -52,8 +52,8 @@ class CoeflabError(Exception):
     Options of the shell that a message names are keywords unless a command runs (`coeflab.core.keywords`).
     """
 
-    def __init__(self, *told: str) -> None:
-        super().__init__(*map(spoken, told))
+    def __init__(self, *parts: str) -> None:
+        super().__init__(*map(spoken, parts))
 
     @property
     def lines(self) -> tuple[str, ...]:

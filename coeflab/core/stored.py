@@ -106,12 +106,12 @@ def _after(schema: Any, function: Callable[[Any], Any]) -> dict[str, Any]:
 
 
 def _through(
-    schema: Any, into: Callable[[Any], Any], made: Callable[[Any], Any], back: Callable[[Any], Any], **more: Any
+    schema: Any, into: Callable[[Any], Any], construct: Callable[[Any], Any], back: Callable[[Any], Any], **more: Any
 ) -> dict[str, Any]:
     """A schema of plain content, between a noun that is taken apart and one that is made."""
     inner = {"type": "function-before", "function": {"type": "no-info", "function": into}, "schema": schema}
     wrap = {"type": "function-wrap", "function": lambda value, handler: handler(back(value)), "schema": schema}
-    return {**_after(inner, made), "serialization": wrap, **more}
+    return {**_after(inner, construct), "serialization": wrap, **more}
 
 
 Finite = Annotated[float, Bounds()]
@@ -267,14 +267,14 @@ def _core_schema(cls: Any, _source: Any, handler: Any) -> Any:
         held = {f.name: getattr(noun, f.name) for f in known}
         return {f.name: held[f.name] for f in known if not (f.silent and _is_default(held[f.name], f.default))}
 
-    def made(values: Any) -> Any:
+    def construct(values: Any) -> Any:
         noun = cls(**values)
         if hasattr(noun, "refuse"):
             noun.refuse()
         return noun
 
     schema = {"type": "typed-dict", "fields": content, "extra_behavior": "forbid"}
-    return _through(schema, apart, made, apart, ref=f"{cls.__module__}.{cls.__qualname__}:{id(cls)}")
+    return _through(schema, apart, construct, apart, ref=f"{cls.__module__}.{cls.__qualname__}:{id(cls)}")
 
 
 def _is_default(value: Any, default: Any) -> bool:
@@ -314,7 +314,7 @@ class Choice:
     """One of some words, spelt out where the field stands; ``made`` makes the noun's own value of it."""
 
     words: tuple[str, ...]
-    made: Callable[[Any], Any] = str
+    construct: Callable[[Any], Any] = str
 
     def __get_pydantic_core_schema__(self, _source: Any, _handler: Any) -> Any:
-        return _through({"type": "literal", "expected": list(self.words)}, str, self.made, str)
+        return _through({"type": "literal", "expected": list(self.words)}, str, self.construct, str)

@@ -32,10 +32,10 @@ def locked_columns(columns: Mapping[str, ArrayLike], dtype: type = float) -> Map
 
 
 Given = ParamSpec("Given")
-Made = TypeVar("Made")
+Returned = TypeVar("Made")
 
 
-def remembered(many: int) -> Callable[[Callable[Given, Made]], Callable[Given, Made]]:
+def remembered(many: int) -> Callable[[Callable[Given, Returned]], Callable[Given, Returned]]:
     """Keep the last results of a pure function of arrays, plain values and frozen dataclasses of such, by their content.
 
     Parameters
@@ -44,11 +44,11 @@ def remembered(many: int) -> Callable[[Callable[Given, Made]], Callable[Given, M
         How many results are kept.
     """
 
-    def decorated(function: Callable[Given, Made]) -> Callable[Given, Made]:
-        known: dict[Any, Made] = {}
+    def decorated(function: Callable[Given, Returned]) -> Callable[Given, Returned]:
+        known: dict[Any, Returned] = {}
 
         @wraps(function)
-        def called(*args: Given.args, **more: Given.kwargs) -> Made:
+        def called(*args: Given.args, **more: Given.kwargs) -> Returned:
             key = _content((*args, *more.values(), *more))
             if key not in known:
                 while len(known) >= many:
@@ -75,7 +75,7 @@ def _content(value: Any) -> Any:
 
 
 Noun = TypeVar("Noun")
-LONGEST_LINE, LONGEST_TEXT, LONGEST_SAID, FEW = 380, 60, 160, 8
+LONGEST_LINE, LONGEST_TEXT, LONGEST_BRIEF, FEW = 380, 60, 160, 8
 
 
 def locking(names: str) -> Callable[[type[Noun]], type[Noun]]:
@@ -94,8 +94,8 @@ def locking(names: str) -> Callable[[type[Noun]], type[Noun]]:
             for name in names.split():
                 value = getattr(self, name)
                 if value is not None:
-                    kept = locked_columns(value) if isinstance(value, Mapping) else locked(value)
-                    object.__setattr__(self, name, kept)
+                    frozen = locked_columns(value) if isinstance(value, Mapping) else locked(value)
+                    object.__setattr__(self, name, frozen)
             if rest is not None:
                 rest(self)
 
@@ -130,10 +130,10 @@ else:
         return decorated
 
 
-def in_angles(noun: object, said: str) -> str:
+def in_angles(noun: object, text: str) -> str:
     """A ``repr`` that says what a noun holds, ``<Kind said>``, in one line and cut where it grows long."""
-    line = " ".join(said.split())
-    return f"<{type(noun).__name__} {line if len(line) <= LONGEST_SAID else f'{line[: LONGEST_SAID - 3]}...'}>"
+    line = " ".join(text.split())
+    return f"<{type(noun).__name__} {line if len(line) <= LONGEST_BRIEF else f'{line[: LONGEST_BRIEF - 3]}...'}>"
 
 
 def _in_a_line(noun: Any) -> str:

@@ -386,11 +386,11 @@ def _symbols_of_bluff(symbols: tuple[str, ...]) -> tuple[str, ...]:
 
     Drag along x is u|u|, without what X0 V^2 needs beside it in drift; the products of the ideal fluid are of u, not of V.
     """
-    selected = (symbols[i] for i in _kept_of_bluff(symbols))
+    selected = (symbols[i] for i in _bluff_indices(symbols))
     return (*("Xu|u|" if s == "X0" else s for s in selected), *(f"{s[0]}u{s[1:]}" for s in TURNED))
 
 
-def _kept_of_bluff(symbols: tuple[str, ...]) -> list[int]:
+def _bluff_indices(symbols: tuple[str, ...]) -> list[int]:
     gone = {f"X{m}{m}" for m in ("v", "w", "p", "q", "r")}
     return [i for i, s in enumerate(symbols) if s not in gone]
 
@@ -400,7 +400,7 @@ def _of_bluff(symbols: tuple[str, ...], values: NDArray[np.float64], ideal: bool
     turned = [symbols.index(s) for s in TURNED]
     own = values[turned] * ideal
     rest = np.where(np.isin(np.arange(len(symbols)), turned) & ideal, 0.0, values)
-    return np.concatenate([rest[_kept_of_bluff(symbols)], own])
+    return np.concatenate([rest[_bluff_indices(symbols)], own])
 
 
 def _at_full_surge(functionals: tuple[Functional, ...], speed: float) -> tuple[Functional, ...]:

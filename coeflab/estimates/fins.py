@@ -104,11 +104,11 @@ class FoilForce:
         lift = speed * (self.own * (at_axis + rolling) + self.turned * ahead * angle)
         across = at_axis + rolling
         force = -pressure * (lift + self.cross * np.abs(across) * across)
-        beside = -pressure * speed * (self.carried * at_axis + self.turned_carried * ahead * angle)
+        sideways = -pressure * speed * (self.carried * at_axis + self.turned_carried * ahead * angle)
         incidence = across * (self.own + self.carried) + ahead * angle * (self.turned + self.turned_carried)
         along = pressure * np.sign(ahead) * incidence * (across - self.induced * incidence / self.lifting)
-        out = acting(force, self.normal, self.centre) + acting(beside, self.normal, self.axis)
-        out[:, 3:] -= np.cross(behind, (astern * (force + beside))[:, None] * self.normal)
+        out = acting(force, self.normal, self.centre) + acting(sideways, self.normal, self.axis)
+        out[:, 3:] -= np.cross(behind, (astern * (force + sideways))[:, None] * self.normal)
         return out + acting(along, np.array([1.0, 0.0, 0.0]), self.axis)
 
 

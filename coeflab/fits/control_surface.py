@@ -130,7 +130,7 @@ def _sign(chosen: Options) -> float:
     return -1.0 if chosen.effective == "delta-alpha" else 1.0
 
 
-def _told(rows: Rows, model: FittedModel, chosen: Options) -> str:
+def _effective_angle_note(rows: Rows, model: FittedModel, chosen: Options) -> str:
     """Whether alpha acts as the effective angle says: the slope that is left over for alpha alone."""
     alpha = rows.x["alpha"]
     if np.ptp(alpha) <= NEAR_ZERO:
@@ -173,15 +173,15 @@ def _fitted(rows: Rows, area: Area, chosen: Options) -> tuple[FittedModel, Fitte
     listing = replace(listing, domain=model.domain)
     if listing.remainder is not None:
         model = replace(model, remainder=listing.remainder.over(_shares(powers, model, chosen)))
-    said = [_told(rows, listing, chosen)] if rows.response != "C_D" else []
+    statements = [_effective_angle_note(rows, listing, chosen)] if rows.response != "C_D" else []
     if rows.response == "C_L":
-        said.insert(0, _lifts(listing))
+        statements.insert(0, _lifts(listing))
     tied = tuple(x for x in model.statements if "collinear" not in x)
     freer = "Fit a narrower range of angles, or a surface over delta and alpha."
     if len(powers) == 1:
         freer = "Try cubic = yes."
     model = replace(model, statements=(*residuals_in_words(model, freer), *tied))
-    return model, replace(listing, statements=(*said, *residuals_in_words(listing, freer), *listing.statements))
+    return model, replace(listing, statements=(*statements, *residuals_in_words(listing, freer), *listing.statements))
 
 
 def _coefficient(model: FittedModel, area: Area, scaling: Scaling, surface: str, citation: str) -> Coefficient | None:
@@ -237,8 +237,8 @@ def fit(tables: Sequence[ForceTable], scaling: Scaling, options: Mapping[str, An
         raise InputError(f"none of X, Z, M in {first.campaign}", "at least one of them", column="control_surface")
     pairs = [_fitted(collect(used, (chosen.surface, "alpha"), r, area), area, chosen) for r in responses]
     models = [replace(m, statements=(*left_out, *m.statements)) for m, _ in pairs] + [m for _, m in pairs]
-    made = [_coefficient(m, area, scaling, chosen.surface, first.source.citation) for _, m in pairs]
-    coefficients = [c for c in made if c is not None]
+    fitted_ones = [_coefficient(m, area, scaling, chosen.surface, first.source.citation) for _, m in pairs]
+    coefficients = [c for c in fitted_ones if c is not None]
     covariance = np.diag([np.nan if c.u95 is None else (c.u95 / 2.0) ** 2 for c in coefficients])
     settings = {"effective": chosen.effective, "cubic": chosen.cubic, "surface": chosen.surface, **area_settings(area)}
     return result_of(

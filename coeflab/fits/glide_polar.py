@@ -232,11 +232,11 @@ def _fitted(rows: Rows, name: str, unit: str) -> FittedModel:
     form = f"{name} = (K_{name}0 + K_{name} a{squared}) V^2, a in {unit}, V in m/s"
     terms = (Term(), Term(((angle, power, False),)))
     model = model_of(used, terms, symbols, form, unit="N*m/(m/s)^2" if name == "M" else "N/(m/s)^2")
-    said = (*residuals_in_words(model, FREER), *model.statements)
-    return replace(model, domain=Domain.of(rows.x, Extrapolation.REFUSE), x=used.x, statements=said)
+    statements = (*residuals_in_words(model, FREER), *model.statements)
+    return replace(model, domain=Domain.of(rows.x, Extrapolation.REFUSE), x=used.x, statements=statements)
 
 
-def _said(model: FittedModel, name: str, speed: Array, errors: Array | None) -> tuple[str, ...]:
+def _notes(model: FittedModel, name: str, speed: Array, errors: Array | None) -> tuple[str, ...]:
     """What K holds, and whether the force goes with the square of the speed."""
     held = f"K_{name}0 and K_{name} include the fluid's density and are not divided by an area."
     if np.ptp(speed) <= SAME_SPEED * speed.max():
@@ -290,12 +290,17 @@ def _derivatives(
 ) -> tuple[list[Coefficient], Array]:
     """The series of fitted models, primed, with what their scatter and form leave open; errors of two models are independent."""
     place = {f"{name}/V^2": slice(2 * i, 2 * i + 2) for i, name in enumerate("LDM")}
-    polar, joint, scatter, worth = np.full(6, np.nan), np.zeros((6, 6)), np.zeros((6, 6)), [Status.NOT_DETERMINED] * 6
+    polar, joint, scatter, statuses = (
+        np.full(6, np.nan),
+        np.zeros((6, 6)),
+        np.zeros((6, 6)),
+        [Status.NOT_DETERMINED] * 6,
+    )
     for m in models:
         at = place[m.response]
         polar[at] = m.fit.coefficients
         joint[at, at], scatter[at, at] = (np.nan_to_num(f.covariance) for f in (m, replace(m, remainder=None)))
-        worth[at] = [m.worth(i)[1] for i in range(2)]
+        statuses[at] = [m.worth(i)[1] for i in range(2)]
     known = {s: np.array(row) for s, row in SERIES.items() if np.isfinite(polar[np.flatnonzero(row)]).all()}
     values = series(np.nan_to_num(polar), munk)
     units = {s: scaling.unit(s, first.conditions.density) for s in known}
@@ -303,7 +308,7 @@ def _derivatives(
     covariance, random = rows @ joint @ rows.T, rows @ scatter @ rows.T
     out = []
     for i, (symbol, row) in enumerate(known.items()):
-        of = [worth[k] for k in np.flatnonzero(row)]
+        of = [statuses[k] for k in np.flatnonzero(row)]
         status = next((s for s in of if s is not Status.FORM_ASSUMED), Status.FORM_ASSUMED)
         half = 2.0 * np.sqrt(np.array([covariance[i, i], random[i, i]]))
         sure = status is Status.FORM_ASSUMED
@@ -350,18 +355,18 @@ def angle_unit_of(printed: Mapping[str, float], result: FitResult) -> AngleUnit:
     if wrong := [s for s in printed if s not in PRINTABLE]:
         raise InputError(shown(wrong[0]), f"one of {', '.join(PRINTABLE)}", column="glide_polar.printed")
     votes: set[str] = set()
-    said = []
+    statements = []
     for slope in (s for s in PRINTABLE if s in printed):
         if slope not in SLOPES:
-            said.append(at_no_angle(slope, printed[slope], result))
+            statements.append(at_no_angle(slope, printed[slope], result))
             continue
         fitted = _per_unit(result, slope)
         if fitted is None:
-            said.append(f"{slope}: not fitted, so the printed {printed[slope]:g} is not compared.")
+            statements.append(f"{slope}: not fitted, so the printed {printed[slope]:g} is not compared.")
             continue
         value, half = fitted["deg"]
         if not (np.isfinite(half) and abs(value) > half) or value * printed[slope] <= 0.0:
-            said.append(
+            statements.append(
                 f"{slope}: printed {printed[slope]:g}, fitted {value:.4g} +- {half:.2g} per degree: of another sign, or the fit cannot distinguish it from zero; it does not decide the unit."
             )
             continue
@@ -369,12 +374,14 @@ def angle_unit_of(printed: Mapping[str, float], result: FitResult) -> AngleUnit:
         value, half = fitted[unit]
         place = "inside" if abs(printed[slope] - value) <= half else "outside"
         votes.add(unit)
-        said.append(f"{slope}: printed {printed[slope]:g} is per {unit}, {place} the fitted {value:.5g} +- {half:.2g}.")
-    inside = sum("inside the fitted" in text for text in said)
+        statements.append(
+            f"{slope}: printed {printed[slope]:g} is per {unit}, {place} the fitted {value:.5g} +- {half:.2g}."
+        )
+    inside = sum("inside the fitted" in text for text in statements)
     if len(votes) == 1:
-        return AngleUnit(next(iter(votes)), tuple(said), inside)
+        return AngleUnit(next(iter(votes)), tuple(statements), inside)
     why = "The slopes disagree about the unit of the angle." if votes else "No slope decides the unit of the angle."
-    return AngleUnit("", (*said, why), inside)
+    return AngleUnit("", (*statements, why), inside)
 
 
 def printed_inside(result: FitResult) -> tuple[int, int]:
@@ -429,8 +436,8 @@ def fit(tables: Sequence[ForceTable], scaling: Scaling, options: Mapping[str, An
     for name, (rows, speed) in _rows(used, chosen.noise).items():
         _check_angles(rows)
         model = _fitted(rows, name, "rad")
-        said = (*_said(model, name, speed, rows.errors), *left_out, *model.statements)
-        radians.append(replace(model, statements=said))
+        statements = (*_notes(model, name, speed, rows.errors), *left_out, *model.statements)
+        radians.append(replace(model, statements=statements))
         degrees.append(_fitted(rows, name, "deg"))
     models = (*radians, *(degrees if chosen.angle_unit == "deg" else ()))
     settings = {"angle_unit": chosen.angle_unit, "noise": chosen.noise, "printed": " ".join(chosen.printed)}

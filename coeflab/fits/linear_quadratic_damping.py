@@ -105,7 +105,7 @@ def _symbols(rows: Rows, terms: Sequence[Term]) -> tuple[str, ...]:
     return tuple(rows.response + t.suffix if t.factors else f"{rows.response} at rest" for t in terms)
 
 
-def _said(model: FittedModel, axis: str) -> tuple[str, ...]:
+def _notes(model: FittedModel, axis: str) -> tuple[str, ...]:
     """Units, sign and doubts of one axis in words."""
     laws = [s for s, t in zip(model.symbols, model.terms, strict=True) if t.factors]
     out = [
@@ -129,7 +129,7 @@ def _fitted(rows: Rows, axis: str, chosen: Options) -> FittedModel:
     law = " + ".join(f"{s} {t}" if t.factors else s for s, t in zip(symbols, terms, strict=True))
     unit = "N*m" if rows.response in MOMENTS else "N"
     model = model_of(rows, terms, symbols, f"{rows.response} = {law}", unit=unit)
-    return replace(model, statements=(*_said(model, axis), *residuals_in_words(model), *model.statements))
+    return replace(model, statements=(*_notes(model, axis), *residuals_in_words(model), *model.statements))
 
 
 def _coefficients(model: FittedModel, axis: str, citation: str) -> tuple[list[Coefficient], Array]:

@@ -201,13 +201,13 @@ def _with_secants(model: FittedModel) -> list[str]:
     for symbol, term, value in zip(model.symbols, model.terms, model.fit.coefficients, strict=True):
         key = canonical(term)
         if len(key) == 1 and key[0][0] in MOTIONS and key[0][1:] == (1, True) and np.isfinite(value):
-            beside = [
+            others = [
                 float(b)
                 for t, b in zip(model.terms, model.fit.coefficients, strict=True)
                 for k in [canonical(t)]
                 if len(k) == 1 and k[0][0] == key[0][0] and k[0][2] and k[0][1] > 1
             ]
-            if beside and np.all(np.isfinite(beside)):
+            if others and np.all(np.isfinite(others)):
                 out.append(str(secant(model, symbol)))
     return out
 
@@ -309,7 +309,7 @@ def fit(tables: Sequence[ForceTable], scaling: Scaling, options: Mapping[str, An
     n_runs = sum(map(len, tables))
     joint = joint_models(components, equations, "manoeuvring model", n_runs=n_runs)
     unused = UNUSED if len({t.campaign for t in tables}) > 1 else UNWEIGHTED
-    weights_said = {c: [WEIGHTED] if weighted else [unused] if known else [] for c, known in stated.items()}
+    weight_words = {c: [WEIGHTED] if weighted else [unused] if known else [] for c, known in stated.items()}
     tied = {symbol[0] for e in equations for symbol, _ in e.weights}
     missed = {
         m.response: ()
@@ -318,7 +318,7 @@ def fit(tables: Sequence[ForceTable], scaling: Scaling, options: Mapping[str, An
         for m in joint.models
     }
     finished = tuple(
-        _finished(m, apart, (*missed[m.response], *weights_said[m.response]), asked.idle) for m in joint.models
+        _finished(m, apart, (*missed[m.response], *weight_words[m.response]), asked.idle) for m in joint.models
     )
     first, campaign, body = tables[0], joint_name(t.campaign for t in tables), joint_name(t.body for t in tables)
     citation = joint_name(t.source.citation for t in tables)
@@ -369,7 +369,7 @@ def _set_of(chosen: Options) -> str:
 def _finished(model: FittedModel, first: Sequence[str], more: Sequence[str], idle: Sequence[NamedTerm]) -> FittedModel:
     """The model with what a reader must know about it, in words."""
     absent = [t.symbol for t in idle if t.component == model.response]
-    said = [
+    statements = [
         *first,
         *model.secants,
         *residuals_in_words(model, MORE_TERMS),
@@ -378,5 +378,5 @@ def _finished(model: FittedModel, first: Sequence[str], more: Sequence[str], idl
         *more,
     ]
     if absent:
-        said.insert(0, f"Not determined, since no table varies their motion: {', '.join(absent)}.")
-    return replace(model, statements=tuple(said))
+        statements.insert(0, f"Not determined, since no table varies their motion: {', '.join(absent)}.")
+    return replace(model, statements=tuple(statements))

@@ -70,12 +70,12 @@ def _oscillation(
         rows = [
             (f, v, n) if f.frequency <= below * (1.0 + SAME) else (replace(f, used=False), v, n) for f, v, n in rows
         ]
-    kept = [r for r in rows if r[0].used]
-    if not kept:
+    used_rows = [r for r in rows if r[0].used]
+    if not used_rows:
         return None
-    forces = [f for f, _, _ in kept]
+    forces = [f for f, _, _ in used_rows]
     amplitude, frequency = (np.array([getattr(f, n) for f in forces]) for n in ("amplitude", "frequency"))
-    freedom = np.array([n if np.isfinite(v[0]) else 0 for _, v, n in kept], dtype=float)
+    freedom = np.array([n if np.isfinite(v[0]) else 0 for _, v, n in used_rows], dtype=float)
     # Runs are weighed as if the scatter of one cycle's force were the same in all.
     assumed = 1.0 / (np.array([f.cycles for f in forces]) * amplitude**2)
     shapes: tuple[Mapping[str, Array | None], ...] = (
@@ -85,7 +85,7 @@ def _oscillation(
     found: list[AtZero] = []
     for i, columns in enumerate(shapes):
         y = np.array([(f.damping, f.inertia)[i][0] for f in forces])
-        own = np.array([v[i] for _, v, _ in kept])
+        own = np.array([v[i] for _, v, _ in used_rows])
         scatter = RunScatter(own, freedom, assumed / (frequency**2 if i else 1.0))
         found.append(at_zero_amplitude(y, scatter, columns, frequency, bool(below)))
     span = (0.0, float(frequency.max())) if below else None
@@ -120,7 +120,7 @@ def _coefficients(o: Oscillation, table: PlanarMotionTable) -> list[Coefficient]
     where = f"w' = {low:.3g}" if high <= low * (1.0 + SAME) else f"w' {low:.3g} to {high:.3g}"
     where = f"taken to w' = 0 from {where}" if o.interval else where
 
-    def made(symbol: str, value: float, half: float, parts: Parts, how: str, status: Status) -> Coefficient:
+    def coefficient(symbol: str, value: float, half: float, parts: Parts, how: str, status: Status) -> Coefficient:
         amplitudes = sorted({r.amplitude for r in o.used})
         return Coefficient(
             symbol=symbol,
@@ -148,7 +148,7 @@ def _coefficients(o: Oscillation, table: PlanarMotionTable) -> list[Coefficient]
             how = "mean of the runs" if at.likeliest.name == "no amplitude" else how
         parts = Parts(random=finite(at.random), model_form=finite(at.form)) if bounded else Parts()
         status = Status.FORM_ASSUMED if bounded else Status.SINGLE_ESTIMATOR
-        out.append(made(symbol, at.value, at.half_width if bounded else np.nan, parts, how, status))
+        out.append(coefficient(symbol, at.value, at.half_width if bounded else np.nan, parts, how, status))
     quadratic = next((f for f in o.damping.forms if f.name == "{0}|{0}|"), None)
     if quadratic is not None:
         known = np.isfinite(quadratic.slope_half) and quadratic.weight >= LEAST_WEIGHT
@@ -159,7 +159,9 @@ def _coefficients(o: Oscillation, table: PlanarMotionTable) -> list[Coefficient]
         symbol = f"{o.symbol}|{o.variable}|"
         parts = Parts(random=finite(half))
         out.append(
-            made(symbol, quadratic.slope, half, parts, f"slope over amplitude, form {o.variable}|{o.variable}|", status)
+            coefficient(
+                symbol, quadratic.slope, half, parts, f"slope over amplitude, form {o.variable}|{o.variable}|", status
+            )
         )
     return out
 
@@ -261,7 +263,7 @@ def _taken_out(table: PlanarMotionTable) -> dict[str, str]:
     return out
 
 
-def beside_steady(fit: FitResult, others: Sequence[FitResult]) -> tuple[Explained, ...]:
+def against_steady(fit: FitResult, others: Sequence[FitResult]) -> tuple[Explained, ...]:
     """Oscillating runs beside the steady fits of the same body: the largest run of every motion by the steady law.
 
     Predicted: C + 8/(3 pi) C|x| a + 3/4 Cxxx a^2 with the steady coefficients C at the amplitude a of the run.

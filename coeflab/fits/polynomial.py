@@ -70,7 +70,12 @@ def _symbol(name: str, term: Term, area: Area) -> str:
 
 
 def _model(
-    tables: Sequence[ForceTable], name: str, terms: tuple[Term, ...], area: Area, chosen: Options, said: tuple[str, ...]
+    tables: Sequence[ForceTable],
+    name: str,
+    terms: tuple[Term, ...],
+    area: Area,
+    chosen: Options,
+    notes: tuple[str, ...],
 ) -> FittedModel:
     rows = collect(tables, (chosen.variable,), name, area)
     symbols = tuple(_symbol(name, t, area) for t in terms)
@@ -87,7 +92,7 @@ def _model(
     freer = f"Try a higher degree, such as degree = {chosen.degree + (1 if chosen.parity == 'full' else 2)}"
     freer += "." if chosen.parity == "full" else ", or parity = full."
     return replace(
-        found, statements=(*said, *found.secants, *residuals_in_words(found, freer), *in_words(exact, symbols))
+        found, statements=(*notes, *found.secants, *residuals_in_words(found, freer), *in_words(exact, symbols))
     )
 
 
@@ -140,13 +145,13 @@ def fit(tables: Sequence[ForceTable], scaling: Scaling, options: Mapping[str, An
     terms = power_terms((chosen.variable,), chosen.degree, "tensor", {chosen.variable: chosen.parity})
     if not terms:
         raise InputError("an odd polynomial of degree 0", "a degree of at least 1", column="polynomial.degree")
-    used, said = only_moving(tables, (chosen.variable,), scaling.length)
+    used, notes = only_moving(tables, (chosen.variable,), scaling.length)
     names = chosen.responses or tuple(c for c in COMPONENTS if allowed(used, c, area))
     if not names:
         raise input_error("fits.no_usable_force_sweep", column="polynomial.responses", variable=chosen.variable)
     first = tables[0]
     models, few = each_with_rows(
-        tuple(dict.fromkeys(names)), lambda n: _model(allowed(used, n, area) or used, n, terms, area, chosen, said), first.campaign
+        tuple(dict.fromkeys(names)), lambda n: _model(allowed(used, n, area) or used, n, terms, area, chosen, notes), first.campaign
     )  # fmt: skip
     parts = [_coefficients(m, chosen, area, first.source.citation) for m in models]
     coefficients = [c for some, _ in parts for c in some]

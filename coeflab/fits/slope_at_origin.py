@@ -87,7 +87,7 @@ class Options:
 def _within(limit: float, points: _Points) -> _Points:
     """The points up to the largest setting; the others are left out."""
     inside = np.abs(points[0]) <= limit
-    return _kept(points, inside, {int(i): "beyond largest_angle" for i in np.flatnonzero(~inside)})
+    return _only(points, inside, {int(i): "beyond largest_angle" for i in np.flatnonzero(~inside)})
 
 
 def _before_stall(rows: SweepRows, variable: str, length: float, points: _Points) -> _Points:
@@ -99,10 +99,10 @@ def _before_stall(rows: SweepRows, variable: str, length: float, points: _Points
     low, high = slopes.before_stall(x, y)
     margin = 1.0 + 1e-5  # settings are compared as they were rounded
     inside = (points[0] >= low * margin) & (points[0] <= high * margin)
-    return _kept(points, inside, dict.fromkeys(np.flatnonzero(~inside).tolist(), STALLED))
+    return _only(points, inside, dict.fromkeys(np.flatnonzero(~inside).tolist(), STALLED))
 
 
-def _kept(points: _Points, keep: NDArray[np.bool_], why: Mapping[int, str]) -> _Points:
+def _only(points: _Points, keep: NDArray[np.bool_], why: Mapping[int, str]) -> _Points:
     x, y, se, labels, left = points
     left += tuple(LeftOut(float(x[i]), float(y[i]), labels[i], why[int(i)]) for i in np.flatnonzero(~keep))
     named = tuple(label for label, stays in zip(labels, keep, strict=True) if stays)
@@ -123,7 +123,7 @@ def _on_one_side(
         return "", points, 0.0
     again = images(points[0], points[1], -1.0 if parity == "odd" else 1.0)
     if np.any(again):
-        points = _kept(points, ~again, dict.fromkeys(np.flatnonzero(again).tolist(), MIRRORED))
+        points = _only(points, ~again, dict.fromkeys(np.flatnonzero(again).tolist(), MIRRORED))
     if parity == "odd" and rows.table.source.kind == COMPUTED:
         points = _paired(points)
     x = points[0]
@@ -132,7 +132,7 @@ def _on_one_side(
     resting, bias = np.abs(x) <= AT_REST, 0.0
     if parity == "odd" and np.any(resting):
         bias = float(points[1][resting].mean())
-        points = _kept(points, ~resting, dict.fromkeys(np.flatnonzero(resting).tolist(), AT_REST_BY_SYMMETRY))
+        points = _only(points, ~resting, dict.fromkeys(np.flatnonzero(resting).tolist(), AT_REST_BY_SYMMETRY))
     return plane, points, bias
 
 
@@ -152,7 +152,7 @@ def _paired(points: _Points) -> _Points:
         taken[int(i)] = PAIRED.format(labels[j])
     keep = np.ones(len(x), dtype=bool)
     keep[list(taken)] = False
-    return _kept((x, y, se, labels, points[4]), keep, taken) if taken else points
+    return _only((x, y, se, labels, points[4]), keep, taken) if taken else points
 
 
 def _sweep(
@@ -223,7 +223,7 @@ def _sweep(
     caps = [c for c in caps if c <= reach * 1.03] if parity == "odd" and reach else []
     shorter = slopes.by_largest(x, y, [w for c in caps if (w := c * (1.0 + slopes.SAME_LEVEL)) < reach], se, odd=odd)
     ended = [s for _, s in shorter] + [origin] * (len(caps) - len(shorter))
-    made = Sweep(
+    sweep = Sweep(
         symbol=symbol,
         variable=variable,
         component=component,
@@ -268,7 +268,7 @@ def _sweep(
         bias=bias,
         borrowed=rows.rest[0].name if rows.rest is not None and component in rows.rest[0].forces and not odd else "",
     )
-    return made, origin
+    return sweep, origin
 
 
 def _by_symmetry(
@@ -411,12 +411,12 @@ def _jobs(tables: Sequence[ForceTable], length: float) -> dict[str, tuple[SweepR
     return out
 
 
-def _beside_runs(tables: Sequence[ForceTable], length: float) -> tuple[list[ForceTable], list[Finding]]:
+def _without_ruled_out(tables: Sequence[ForceTable], length: float) -> tuple[list[ForceTable], list[Finding]]:
     """The tables without those by symmetry that runs in their plane rule out, and what was compared.
 
     Of every odd component the runs are held against the curve of the turned rows, all of a table together.
     """
-    kept, found = [], []
+    selected, found = [], []
     for table in tables:
         squares, count, freedom = 0.0, 0, np.inf
         for variable in (v for v in ODD if table.by_symmetry and v in table.varies):
@@ -443,8 +443,8 @@ def _beside_runs(tables: Sequence[ForceTable], length: float) -> tuple[list[Forc
                 )
             )  # fmt: skip
         if share >= UNLIKE:
-            kept.append(table)
-    return kept, found
+            selected.append(table)
+    return selected, found
 
 
 def fit(tables: Sequence[ForceTable], scaling: Scaling, options: Mapping[str, Any]) -> FitResult:
@@ -468,7 +468,7 @@ def fit(tables: Sequence[ForceTable], scaling: Scaling, options: Mapping[str, An
     length = scaling.length
     wanted = tables[0].reference_point
     shift = arm_shift(tables)
-    tables, beside = _beside_runs([t.about(wanted + np.array([shift, 0.0, 0.0])) for t in tables], length)
+    tables, compared = _without_ruled_out([t.about(wanted + np.array([shift, 0.0, 0.0])) for t in tables], length)
     sweeps: list[Sweep] = []
     last: tuple[Sweep, OriginSlope] | None = None
     for symbol, (rows, variable, component, parity) in _jobs(tables, length).items():
@@ -487,6 +487,6 @@ def fit(tables: Sequence[ForceTable], scaling: Scaling, options: Mapping[str, An
         covariance = independent([covariance, np.array([[own]])])
     result = result_of(
         "slope_at_origin", first, scaling, coefficients, covariance, citations=citations, settings=_moved(shift, first),
-        sweeps=tuple(sweeps), straight=straight, findings=(*(_no_symmetry(s) for s in sweeps if s.withdrawn is not None), *beside),
+        sweeps=tuple(sweeps), straight=straight, findings=(*(_no_symmetry(s) for s in sweeps if s.withdrawn is not None), *compared),
     )  # fmt: skip
     return replace(result, coefficients=result.coefficients.about(wanted))

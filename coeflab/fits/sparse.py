@@ -87,14 +87,16 @@ def scaled_optimizer(kind: str) -> Optimizer:
     def run(matrix: Array, y: Array, threshold: float) -> Array:
         if kind == "sr3":
             # The proximal step of l0 keeps |b| > sqrt(2 lambda nu).
-            made = pysindy.SR3(reg_weight_lam=0.5 * threshold**2, relax_coeff_nu=1.0, regularizer="l0", max_iter=500)
+            optimizer = pysindy.SR3(
+                reg_weight_lam=0.5 * threshold**2, relax_coeff_nu=1.0, regularizer="l0", max_iter=500
+            )
         else:
-            made = pysindy.STLSQ(threshold=threshold, alpha=RIDGE)
+            optimizer = pysindy.STLSQ(threshold=threshold, alpha=RIDGE)
         with warnings.catch_warnings():
             warnings.filterwarnings("ignore", message="Sparsity parameter is too big")
             warnings.filterwarnings("ignore", message=".*did not converge.*")
-            made.fit(matrix, y[:, None])
-        coefficients: Array = np.array(made.coef_, dtype=np.float64)
+            optimizer.fit(matrix, y[:, None])
+        coefficients: Array = np.array(optimizer.coef_, dtype=np.float64)
         return coefficients.reshape(-1)
 
     return run
@@ -121,7 +123,7 @@ def _model(data: JointRows, component: str, terms: tuple[Term, ...], chosen: Opt
     fitted = (*((Term(),) if intercept else ()), *taken)
     symbols = tuple(component + t.suffix for t in fitted)
     model = model_of(rows, fitted, symbols, f"sparse, {chosen.optimizer}", weighted=False, post_selection=True)
-    said = (
+    statements = (
         *data.statements,
         *([UNWEIGHTED] if rows.errors is not None else []),
         *_alike(matrix, rows.y, component, terms, intercept),
@@ -132,7 +134,7 @@ def _model(data: JointRows, component: str, terms: tuple[Term, ...], chosen: Opt
         str(every_third_point(model)),
         AFTER_SELECTION,
     )
-    return replace(model, statements=said), short
+    return replace(model, statements=statements), short
 
 
 def _names(component: str, terms: Sequence[Term], selection: Selection) -> dict[int, str]:

@@ -183,8 +183,8 @@ def sum_of_slices(model: FittedModel, columns: Mapping[str, Array]) -> tuple[Arr
         The sum of the slices, and the sum less the model.
     """
     slices = [
-        model.evaluate({v: x if v == kept else np.zeros_like(x) for v, x in columns.items()})[0]
-        for kept in model.domain.variables
+        model.evaluate({v: x if v == selected else np.zeros_like(x) for v, x in columns.items()})[0]
+        for selected in model.domain.variables
     ]
     printed = np.asarray(sum(slices), dtype=np.float64)
     return printed, np.asarray(printed - model.evaluate(columns)[0], dtype=np.float64)
@@ -205,7 +205,7 @@ def _slices_in_words(model: FittedModel) -> tuple[str, ...]:
     )
 
 
-def _model(tables: Sequence[ForceTable], name: str, chosen: Options, area: Area, said: tuple[str, ...]) -> FittedModel:
+def _model(tables: Sequence[ForceTable], name: str, chosen: Options, area: Area, notes: tuple[str, ...]) -> FittedModel:
     first, second = chosen.variables
     rows = collect(tables, (first, second), name, area)
     fitted = {form: _fitted(rows, chosen, form, area) for form in FORMS}
@@ -220,7 +220,7 @@ def _model(tables: Sequence[ForceTable], name: str, chosen: Options, area: Area,
     freer += ", or form = tensor" if chosen.form == "additive" else ""
     freer += "." if chosen.parity or not _sided(chosen) else f", or parity = {_sided(chosen)[0]}=full."
     words_ = (
-        *said,
+        *notes,
         *residuals_in_words(model, freer),
         compared(fitted["additive"], full, rows),
         *(_slices_in_words(model) if chosen.form == "additive" else ()),
@@ -260,7 +260,7 @@ def fit(tables: Sequence[ForceTable], scaling: Scaling, options: Mapping[str, An
             "fits.two_different_ones", column="surface.variables", what=", ".join(chosen.variables) or "none"
         )
     area = sweeps.area_of(chosen.area, chosen.area_name, scaling)
-    used, said = sweeps.only_moving(tables, chosen.variables, scaling.length)
+    used, notes = sweeps.only_moving(tables, chosen.variables, scaling.length)
     names = chosen.responses or tuple(n for n in USUAL if sweeps.allowed(used, n, area))
     if not names:
         raise InputError("no force that the tables give", f"one of {', '.join(USUAL)}", column="surface.responses")
@@ -271,7 +271,7 @@ def fit(tables: Sequence[ForceTable], scaling: Scaling, options: Mapping[str, An
         **sweeps.area_settings(area),
     }  # fmt: skip
     models, few = each_with_rows(
-        tuple(dict.fromkeys(names)), lambda n: _model(sweeps.allowed(used, n, area) or used, n, chosen, area, said), first.campaign
+        tuple(dict.fromkeys(names)), lambda n: _model(sweeps.allowed(used, n, area) or used, n, chosen, area, notes), first.campaign
     )  # fmt: skip
     return result_of(
         "surface",

@@ -399,7 +399,7 @@ def complete(found: FitResult, tables: Sequence[ForceTable], scaling: Scaling, o
     among, length, tables = found.coefficients, scaling.length, counted_once(tables)
     declared = tuple(s for s in tables[0].symmetry if all(s in t.symmetry for t in tables))
     every: list[Coefficient] = []
-    blocks, moves, rest, said = [], [], [], list[Finding]()
+    blocks, moves, rest, findings = [], [], [], list[Finding]()
     for component in COMPONENTS:
         bases = _bases(component, among)
         bent = _curvatures_of_rates(component, found)
@@ -425,7 +425,7 @@ def complete(found: FitResult, tables: Sequence[ForceTable], scaling: Scaling, o
         rest += [
             (law.rows.names[i], t.symbol, float(value)) for (i, t), value in zip(law.set_up, law.values, strict=False)
         ]
-        said += _of_one_ratio(law, bent, tables[0].campaign)
+        findings += _of_one_ratio(law, bent, tables[0].campaign)
         if law.form:
             some, block, moved = _coefficients(law, among, bases, tables[0])
             every += some
@@ -437,7 +437,7 @@ def complete(found: FitResult, tables: Sequence[ForceTable], scaling: Scaling, o
     tied = Tied(found.fit, tuple(c.symbol for c in among.coefficients), sensitivity, tuple(rest))
     return result_of(
         "tied_law", tables[0], scaling, every, covariance, citations=citations, settings={"at_rest": chosen.at_rest}, tied=tied,
-        findings=tuple(said),
+        findings=tuple(findings),
     )  # fmt: skip
 
 

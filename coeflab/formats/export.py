@@ -27,7 +27,7 @@ from coeflab.formats import (
     SteeredExporter,
 )
 from coeflab.formats.lacking_law import found_in, lacking_tables, without_law
-from coeflab.formats.loss import Kind, Loss, Lost, loss_of, lost_by_all
+from coeflab.formats.loss import Kind, Loss, LossItem, loss_of, common_losses
 from coeflab.formats.loss_tables import as_text, in_short
 from coeflab.vehicle.inertia import MEASURED, converted, water_inertia, with_accelerations
 
@@ -160,8 +160,8 @@ def export(
         files |= _remarks(files, parameters, target, found_in(parameters))
         return Export(parameters.name, target, files, None, plugin.citations)
     left = _left_out(plugin, given, accept_loss)
-    missing = tuple(Lost(Kind.MISSING, words) for words in plugin.missing(given))
-    lost = (*left, *missing, *lost_by_all(parameters, plugin.holds, water))
+    missing = tuple(LossItem(Kind.MISSING, words) for words in plugin.missing(given))
+    losses = (*left, *missing, *common_losses(parameters, plugin.holds, water))
     changes = (
         *dict.fromkeys((*plugin.changes(given), *water.warnings)),
         *without_law(parameters),
@@ -169,7 +169,7 @@ def export(
         *_renamed(files, parameters),
     )
     found = loss_of(
-        target, parameters, files, plugin.force, plugin.not_held(given), lost, changes, water,
+        target, parameters, files, plugin.force, plugin.not_held(given), losses, changes, water,
         plugin.added_mass if isinstance(plugin, InertialExporter) else None,
         plugin.steered_force if isinstance(plugin, SteeredExporter) else None,
     )  # fmt: skip
@@ -197,7 +197,7 @@ def _remarks(
     return {f"{file_stem(parameters.name)}.{target}.remarks.txt": ("\n".join(found) + "\n").encode()}
 
 
-def _left_out(plugin: SimulatorExporter, given: ParameterFile, accept_loss: bool) -> tuple[Lost, ...]:
+def _left_out(plugin: SimulatorExporter, given: ParameterFile, accept_loss: bool) -> tuple[LossItem, ...]:
     """What the target's files are without, for it would be of the wrong sign there.
 
     Raises
@@ -212,7 +212,7 @@ def _left_out(plugin: SimulatorExporter, given: ParameterFile, accept_loss: bool
     if not accept_loss:
         advice = f"{why.advice} Or accept the loss: it is written without, and the loss report says of what."
         raise InputError(why.found, why.expected, file=why.file, column=why.column, advice=advice)
-    return tuple(Lost(Kind.LEFT_OUT, phrases) for phrases in words)
+    return tuple(LossItem(Kind.LEFT_OUT, phrases) for phrases in words)
 
 
 def _refuse_places(files: Mapping[str, bytes], parameters: ParameterFile, target: str) -> None:
@@ -302,12 +302,12 @@ def exports_of(
     return tuple(out), tuple(refused)
 
 
-def _dressed(made: Export, parameters: ParameterFile, shapes: Mapping[str, Shape]) -> Export:
+def _dressed(result: Export, parameters: ParameterFile, shapes: Mapping[str, Shape]) -> Export:
     """With what the target shows of the body, where its shape is known and the file's."""
-    plugin, shape, hull = EXPORTERS.load(made.target), shapes.get(parameters.name), parameters.added_mass
+    plugin, shape, hull = EXPORTERS.load(result.target), shapes.get(parameters.name), parameters.added_mass
     if not isinstance(plugin, DressedExporter) or shape is None or hull is None or hull.body != parameters.body:
-        return made
-    return replace(made, files=plugin.dressed(made.files, shape, np.array(parameters.reference_point.point)))
+        return result
+    return replace(result, files=plugin.dressed(result.files, shape, np.array(parameters.reference_point.point)))
 
 
 def _accepted(p: PlannedExport, parameters: ParameterFile) -> Export:

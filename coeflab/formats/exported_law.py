@@ -162,7 +162,7 @@ class Afloat:
         m/s^2.
     length : float
         m, of a cylinder of that volume, no shorter than thick.
-    said : str
+    note : str
         Where volume and centre come from.
     """
 
@@ -172,7 +172,7 @@ class Afloat:
     centre_of_buoyancy: Array
     gravity: float
     length: float
-    said: str
+    note: str
 
     @property
     def radius(self) -> float:

@@ -38,7 +38,7 @@ class Kind(StrEnum):
 
 
 @dataclass(frozen=True, slots=True)
-class Lost:
+class LossItem:
     """One loss.
 
     Attributes
@@ -57,17 +57,17 @@ class Lost:
         return f"{self.kind}: {self.what}"
 
 
-def lost_by_all(parameters: ParameterFile, holds: frozenset[str], water: WaterInertia) -> tuple[Lost, ...]:
+def common_losses(parameters: ParameterFile, holds: frozenset[str], water: WaterInertia) -> tuple[LossItem, ...]:
     """What every simulator loses: fitted tables, parts of the vehicle that are not among those it ``holds``, accelerations
     that are not in the added mass it is given, and an added mass of another body.
     """
     tables = () if "tables" in holds else tuple(_table(s.model) for s in sources_of(parameters).tables)
-    unheld = tuple(Lost(Kind.NOT_HELD, words) for words in (*tables, *_vehicle(parameters, holds)))
+    unheld = tuple(LossItem(Kind.NOT_HELD, words) for words in (*tables, *_vehicle(parameters, holds)))
     hull = parameters.added_mass
-    out = [*unheld, *(Lost(Kind.REPLACED, words) for words in _accelerations(parameters, water))]
+    out = [*unheld, *(LossItem(Kind.REPLACED, words) for words in _accelerations(parameters, water))]
     if hull is not None and hull.body != parameters.body:
         out.append(
-            Lost(
+            LossItem(
                 Kind.MISMATCH,
                 f"the added mass is that of {hull.body}, the coefficients are those of {parameters.body}: the potential parts, and "
                 "the viscous remainders, belong to another shape",
@@ -246,7 +246,7 @@ class Loss:
 
     target: str
     not_held: tuple[str, ...]
-    lost: tuple[Lost, ...]
+    lost: tuple[LossItem, ...]
     changes: tuple[str, ...]
     forces: Apart
     accelerations: Apart | None
@@ -404,7 +404,7 @@ def loss_of(
     files: Mapping[str, bytes],
     force: Callable[[Mapping[str, bytes], Array], Array],
     not_held: tuple[str, ...],
-    lost: tuple[Lost, ...],
+    lost: tuple[LossItem, ...],
     changes: tuple[str, ...],
     water: WaterInertia,
     added_mass: Callable[[Mapping[str, bytes]], Array] | None = None,

@@ -49,7 +49,7 @@ def matrix_doubts(matrix: Array) -> tuple[str, ...]:
 Coefficients = dict[str, tuple[float, Law]]
 
 
-def kept_matrix(matrix: Array) -> Array | None:
+def valid_matrix(matrix: Array) -> Array | None:
     """The matrix where it can be an added mass; None where it is zero or no kinetic energy."""
     return but_for_rounding(matrix) if np.any(matrix) and not matrix_doubts(matrix) else None
 
@@ -78,7 +78,7 @@ def stated_coefficients(
     from u|u|, v^2 and w^2. A product that is just the ideal fluid's is left to the added
     mass.
     """
-    selected = kept_matrix(matrix)
+    selected = valid_matrix(matrix)
     ideal = np.zeros((6, 6, 6)) if selected is None else products_once(ideal_quadratics(selected))
     own = products_once(added)
     out: Coefficients = {}

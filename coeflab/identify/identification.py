@@ -141,7 +141,7 @@ class Found:
         Share of the resamples in which the sparse fit keeps a column.
     low, high : (p,) arrays
         95 % intervals of the kept columns, see `half_widths`; NaN where there are too few stretches.
-    kept : tuple of int
+    retained : tuple of int
     threshold : float
         Of the scaled problem, by cross-validation over stretches.
     left : float
@@ -152,7 +152,7 @@ class Found:
     frequency: Array
     low: Array
     high: Array
-    kept: tuple[int, ...]
+    retained: tuple[int, ...]
     threshold: float
     left: float
 
@@ -218,7 +218,7 @@ def identify(p: Products, optimizer: Optimizer, *, seed: int, resamples: int) ->
     return Found(coefficients, frequency, low, high, tuple(chosen), threshold, float(left))
 
 
-def half_widths(p: Products, kept: Sequence[int]) -> Array:
+def half_widths(p: Products, retained: Sequence[int]) -> Array:
     """95 % half-widths of the kept columns: scatter over stretches, and what another choice of columns would say.
 
     Scatter is the jackknife over stretches by Student's factor. Percentiles of resampled stretches lack that factor, and
@@ -230,14 +230,14 @@ def half_widths(p: Products, kept: Sequence[int]) -> Array:
     ----------
     p : Products
         Of all columns that could have been chosen.
-    kept : sequence of int
+    retained : sequence of int
     """
-    values = p.solved(kept)
-    error, freedom = _jackknife(p, kept)
-    added, weights = [np.zeros(len(kept))], [ALL_LEFT_OUT]
-    others = [k for k in range(p.gram.shape[1]) if k not in kept]
+    values = p.solved(retained)
+    error, freedom = _jackknife(p, retained)
+    added, weights = [np.zeros(len(retained))], [ALL_LEFT_OUT]
+    others = [k for k in range(p.gram.shape[1]) if k not in retained]
     for k in others:
-        wider = [*kept, k]
+        wider = [*retained, k]
         with_it, (errors, _) = p.solved(wider), _jackknife(p, wider)
         square = float(with_it[-1] / errors[-1]) ** 2 if errors[-1] > 0.0 else 0.0
         if square > 1.0:
@@ -295,18 +295,18 @@ def _threshold(p: Products, optimizer: Optimizer) -> float:
     return float(THRESHOLDS[len(errors) - 1 - int(np.argmin(errors[::-1]))])
 
 
-def exchangeable(p: Products, kept: Sequence[int]) -> dict[int, tuple[int, ...]]:
+def exchangeable(p: Products, retained: Sequence[int]) -> dict[int, tuple[int, ...]]:
     """For every kept column those left out that do as well in its place.
 
     One does where the misfit grows by less than two standard errors over the stretches.
     """
     out: dict[int, tuple[int, ...]] = {}
-    best = p.misfit(kept, p.solved(kept))
+    best = p.misfit(retained, p.solved(retained))
     fewest = np.finfo(float).eps * float(np.abs(p.total).sum())
-    for j in kept:
+    for j in retained:
         others = []
-        for k in sorted(set(range(p.gram.shape[1])) - set(kept)):
-            swapped = [k if i == j else i for i in kept]
+        for k in sorted(set(range(p.gram.shape[1])) - set(retained)):
+            swapped = [k if i == j else i for i in retained]
             worse = p.misfit(swapped, p.solved(swapped)) - best
             error = float(np.std(worse)) * np.sqrt(len(worse))
             if worse.sum() <= max(CLEARLY * error, 100.0 * fewest):

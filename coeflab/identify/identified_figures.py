@@ -128,13 +128,19 @@ def _values(figure: Drawing, rows: list[IdentifiedTerm], tall: float) -> Panel:
         for vs in zip(*((t.value, t.file_value) for t in rows), strict=True)
     )
     words = (
-        points("own", "identified", own / sizes, at - 0.14, [_said(t.symbol, t.value, t.low, t.high) for t in rows]),
+        points(
+            "own",
+            "identified",
+            own / sizes,
+            at - 0.14,
+            [_interval_text(t.symbol, t.value, t.low, t.high) for t in rows],
+        ),
         points("file", "parameter file", file / sizes, at + 0.14, [_of_file(t) for t in rows]),
     )
     return numbers(axes, words, "over the file's size  [-]", "", bars="across")
 
 
-def _said(symbol: str, value: float | None, low: float | None, high: float | None) -> str:
+def _interval_text(symbol: str, value: float | None, low: float | None, high: float | None) -> str:
     """A value with the ends of its interval."""
     ends = "" if low is None or high is None else f", {coefficient(low)} to {coefficient(high)}"
     return f"{symbol} = {coefficient(value)}{ends}"

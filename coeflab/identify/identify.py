@@ -46,7 +46,7 @@ from coeflab.identify.series import ANGLES, MotionSeries, read_series
 from coeflab.law.added_mass import potential_part
 from coeflab.law.symbols import COMPONENTS, CONTROLS, MOTIONS, primed
 from coeflab.motion.vehicle import Vehicle, vehicle
-from coeflab.vehicle.force_law import EDGE, known_beside
+from coeflab.vehicle.force_law import EDGE, known_with_terms
 from coeflab.vehicle.inertia import ACCELERATIONS, MEASURED, WaterInertia
 from coeflab.vehicle.parameter_file import ParameterFile
 
@@ -169,7 +169,7 @@ def _identified(
         parameters, moving, o.terms, symmetric=o.symmetric == "yes", accelerations=fit_added,
         driven=frozenset(c for k, c in enumerate(COMPONENTS) if any(np.any(known(s, body)[:, k] != 0.0) for s in series)),
     )  # fmt: skip
-    law, found = known_beside(parameters, [(t.symbol, t.component, t.term) for t in library if not t.rate])
+    law, found = known_with_terms(parameters, [(t.symbol, t.component, t.term) for t in library if not t.rate])
     body = replace(body, law=law)
     terms: list[IdentifiedTerm] = []
     balances = []
@@ -215,7 +215,7 @@ def _component(
     if usable:
         sub = balance.of(usable)
         found = identify(sub, scaled_optimizer(o.optimizer), seed=o.seed, resamples=o.resamples)
-        others = exchangeable(sub, found.kept)
+        others = exchangeable(sub, found.retained)
     out = []
     for j, candidate in enumerate(mine):
         file = _in_file(candidate, parameters, water)
@@ -280,7 +280,7 @@ def _result(
     file: File,
 ) -> IdentifiedTerm:
     frequency = float(found.frequency[at])
-    if at not in found.kept:
+    if at not in found.retained:
         return _term(candidate, Outcome.NOT_NEEDED, "", file, frequency=frequency)
     scale = 1.0 / candidate.per_prime
     value, low, high = (float(a[at]) * scale for a in (found.coefficients, found.low, found.high))

@@ -45,8 +45,8 @@ def determined(data: Array, prior: Array) -> tuple[Array, NDArray[np.bool_]]:
     void = singular <= SINGULAR * max(float(singular.max(initial=0.0)), np.finfo(float).tiny)
     known = turned[~void] / singular[~void, None]
     covariance = known.T @ known / np.outer(unit, unit)
-    lost = np.any(np.abs(turned[void]) > TAKES_PART, axis=0) | (length == 0.0)
-    return covariance, np.asarray(lost | (np.sqrt(np.diag(covariance)) > OPEN))
+    undetermined = np.any(np.abs(turned[void]) > TAKES_PART, axis=0) | (length == 0.0)
+    return covariance, np.asarray(undetermined | (np.sqrt(np.diag(covariance)) > OPEN))
 
 
 def dependent_sets(data: Array, free: NDArray[np.bool_], largest: int = LARGEST_SET) -> tuple[Array, ...]:
@@ -95,11 +95,11 @@ def _least_seen(columns: Array) -> Array:
     return np.asarray(change / change[np.argmax(np.abs(change))])
 
 
-def _is_new(change: Array, kept: list[Array]) -> bool:
+def _is_new(change: Array, accepted: list[Array]) -> bool:
     """Whether a change says more than those before it."""
-    if not kept:
+    if not accepted:
         return True
-    basis = np.linalg.qr(np.column_stack(kept))[0]
+    basis = np.linalg.qr(np.column_stack(accepted))[0]
     return bool(np.linalg.norm(change - basis @ (basis.T @ change)) > NEW * np.linalg.norm(change))
 
 

@@ -139,8 +139,8 @@ def read_series(path: Path, vehicle: Vehicle, columns: str = "") -> MotionSeries
         findings = list(contradicted(found, path.name))
     for one in findings:
         if one.severity is Severity.FAIL:
-            said = words(one)
-            raise InputError(said.statement, said.rule, file=path, advice=said.advice)
+            wording = words(one)
+            raise InputError(wording.statement, wording.rule, file=path, advice=wording.advice)
     time = found["t"]
     n = len(time)
     zero = np.zeros(n)

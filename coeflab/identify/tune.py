@@ -129,16 +129,16 @@ def tuning_problem(plan: TuningPlan) -> Problem:
     """Measured quantities as outputs of the free parameters."""
     cases, free = plan.cases, plan.free
 
-    def made(parameters: Array) -> Vehicle:
+    def with_parameters(parameters: Array) -> Vehicle:
         values = {w: float(x) for f, x in zip(free, parameters, strict=True) for w in f.places}
         return vehicle(moved(plan.parameters, values), free=("u", "v", "r"))
 
-    made(np.array([f.start for f in free]))  # from here on an error is one of values that the fit tries
+    with_parameters(np.array([f.start for f in free]))  # from here on an error is one of values that the fit tries
 
     def possible(parameters: Array) -> Vehicle | None:
         """The vehicle; None where none can be, as with an effective mass that is not positive."""
         try:
-            return made(parameters)
+            return with_parameters(parameters)
         except InputError:
             return None
 

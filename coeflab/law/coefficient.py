@@ -64,7 +64,7 @@ class Status(StrEnum):
 
 # What a file has in the place of others: there the interval says that a sign is open, and the estimator what the form assumes.
 FILED = {Status.SIGN_OPEN: Status.OK, Status.SYMMETRY_ASSUMED: Status.FORM_ASSUMED}
-SAID = (Status.FORM_REJECTED, Status.SYMMETRY_ASSUMED)  # beside a value, wherever it stands
+NAMED_STATUSES = (Status.FORM_REJECTED, Status.SYMMETRY_ASSUMED)  # beside a value, wherever it stands
 IN_FILES = tuple(s for s in Status if s not in FILED)
 
 
@@ -438,8 +438,8 @@ def moved_together(sets: Sequence[CoefficientSet], covariance: Array, point: Arr
     moved, void = moves @ values, np.isnan(np.diag(covariance))
     spread = moves @ np.nan_to_num(covariance) @ moves.T
     spread = 0.5 * (spread + spread.T)
-    lost = (moves != 0.0) @ void | ~known
-    spread[lost, :] = spread[:, lost] = np.nan
+    undetermined = (moves != 0.0) @ void | ~known
+    spread[undetermined, :] = spread[:, undetermined] = np.nan
     out = []
     for s, start, end in zip(sets, ends[:-1], ends[1:], strict=True):
         changed = []
@@ -450,7 +450,7 @@ def moved_together(sets: Sequence[CoefficientSet], covariance: Array, point: Arr
             elif np.count_nonzero(moves[k]) == 1:
                 changed.append(c)
             else:
-                u95 = None if lost[k] else float(2.0 * np.sqrt(spread[k, k]))
+                u95 = None if undetermined[k] else float(2.0 * np.sqrt(spread[k, k]))
                 changed.append(replace(c, value=float(moved[k]), u95=u95, parts=Parts()))
         out.append(replace(
             s, coefficients=tuple(changed), covariance=spread[start:end, start:end], reference_point=np.asarray(point, dtype=float)

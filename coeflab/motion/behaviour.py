@@ -107,7 +107,7 @@ def _pair(
 
 
 def _indices(a: ParameterFile, b: ParameterFile) -> list[Behaviour]:
-    both = [{d.name: d for d in stability(f)} for f in (under_plain_names(a), _beside(under_plain_names(b), a))]
+    both = [{d.name: d for d in stability(f)} for f in (under_plain_names(a), _at_scale_of(under_plain_names(b), a))]
     out = []
     for name in ("G_h", "G_v"):
         one, other = (s.get(name) for s in both)
@@ -126,7 +126,7 @@ def _indices(a: ParameterFile, b: ParameterFile) -> list[Behaviour]:
     return out
 
 
-def _beside(b: ParameterFile, a: ParameterFile) -> ParameterFile:
+def _at_scale_of(b: ParameterFile, a: ParameterFile) -> ParameterFile:
     """A file by the length and about the point of another, coefficients and mass; as it is where their datums differ.
 
     The index is a ratio whose parts depend on the point: two of other datums are no difference.
@@ -302,8 +302,10 @@ def _curves(a: ParameterFile, b: ParameterFile, speed: float) -> list[Behaviour]
             where = f"largest at {name} = {np.linspace(-reach, reach, POINTS)[at]:.3g}" + (
                 "" if same else "; points of other datums"
             )
-            if lost := list(dict.fromkeys(n for d in (lacks, other_lacks) for n, moved in d.items() if moved[at, i])):
-                where += f"; no U95 of {listed(lost)}"
+            if unknown := list(
+                dict.fromkeys(n for d in (lacks, other_lacks) for n, moved in d.items() if moved[at, i])
+            ):
+                where += f"; no U95 of {listed(unknown)}"
             out.append(Behaviour(f"{component} over {name}", "N m" if component in "KMN" else "N", float(one[at, i]), float(other[at, i]),
                                  size, None if np.isnan(combined) or combined == 0.0 else combined, where))  # fmt: skip
     return out

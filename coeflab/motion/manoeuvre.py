@@ -524,10 +524,10 @@ def reach_time(begin: Array, target: Array, rate: Array) -> Array:
 
 def standing_orders(manoeuvre: Manoeuvre) -> tuple[Mapping[str, float], ...]:
     """What stands in each phase: its own orders, and before them those that were given earlier."""
-    out, stands = [], dict(manoeuvre.orders)
+    out, current = [], dict(manoeuvre.orders)
     for phase in manoeuvre.phases:
-        stands = stands | dict(phase.orders)
-        out.append(stands)
+        current = current | dict(phase.orders)
+        out.append(current)
     return tuple(out)
 
 
@@ -554,11 +554,11 @@ def orders_of(vehicle: Vehicle, manoeuvre: Manoeuvre) -> Orders:
     surfaces = {s.control: s for s in vehicle.surfaces}
     rates = [surfaces[c].rate if c in surfaces else None for c in CONTROLS]
     untils = [p.until for p in manoeuvre.phases]
-    commands = [{k: v for k, v in stands.items() if k not in CONTROLS} for stands in standing]
+    commands = [{k: v for k, v in current.items() if k not in CONTROLS} for current in standing]
     late = _late(vehicle, manoeuvre.orders, commands)
-    commands = [{k: v for k, v in stands.items() if not late or k not in late.names} for stands in commands]
+    commands = [{k: v for k, v in current.items() if not late or k not in late.names} for current in commands]
     return Orders(
-        angles=np.array([[stands.get(c, 0.0) for c in CONTROLS] for stands in standing]),
+        angles=np.array([[current.get(c, 0.0) for c in CONTROLS] for current in standing]),
         begin=np.array([manoeuvre.orders.get(c, 0.0) for c in CONTROLS], dtype=np.float64),
         rate=np.array([np.inf if r is None else r for r in rates]),
         wrench=np.array([vehicle.wrench(c) for c in commands]),
@@ -610,7 +610,7 @@ def beyond_curves(vehicle: Vehicle, manoeuvre: Manoeuvre) -> tuple[str, ...]:
     """Commands beyond what a thruster's curve holds, where the thrust at its end stands in; in words."""
     out = []
     for t in vehicle.thrusters:
-        asked = [stands[t.name] for stands in standing_orders(manoeuvre) if t.name in stands]
+        asked = [current[t.name] for current in standing_orders(manoeuvre) if t.name in current]
         if asked and not t.curve.low <= min(asked) <= max(asked) <= t.curve.high:
             out.append(
                 f"{t.name} is ordered {min(asked):g} to {max(asked):g} {t.curve.unit}; its curve holds "

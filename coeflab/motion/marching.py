@@ -265,12 +265,12 @@ class Marched:
             if not np.isfinite(switches[k]):
                 break
             begin, since = ramp(begin, target, rate, switches[k : k + 1] - since), float(switches[k])
-        names = dict.fromkeys(name for stands in standing for name in stands)
+        names = dict.fromkeys(name for current in standing for name in current)
         surfaces = {s.control for s in self.ensemble.vehicle.surfaces}
         out = {c: angles[k] for k, c in enumerate(CONTROLS) if c in names or c in surfaces}
         for name in names:
             if name not in CONTROLS:
-                out[name] = np.array([stands.get(name, 0.0) for stands in standing])[phase]
+                out[name] = np.array([current.get(name, 0.0) for current in standing])[phase]
         return out
 
 

@@ -272,12 +272,12 @@ def _inertia(parameters: ParameterFile, moves: Sequence[str]) -> Array:
     return np.zeros((3, 3))
 
 
-def _positive(made: Vehicle) -> None:
-    at = np.ix_(made.free_columns, made.free_columns)
-    block = made.effective_mass[at]
+def _positive(given: Vehicle) -> None:
+    at = np.ix_(given.free_columns, given.free_columns)
+    block = given.effective_mass[at]
     low = float(np.linalg.eigvalsh((block + block.T) / 2.0)[0])
     if not low > 0.0:
-        raise input_error("motion.mass_not_definite", column="added_mass", free=", ".join(made.free), low=low)
+        raise input_error("motion.mass_not_definite", column="added_mass", free=", ".join(given.free), low=low)
 
 
 def control_rows(controls: Mapping[str, Array], n: int) -> Array:

@@ -77,8 +77,8 @@ def document(study: Study, *, full: bool = True, review: bool = False) -> Docume
     with keeping(verbatim):
         result = _document(study, full and not review)
         if review:
-            kept = core(result)
-            result = replace(kept, sections=(*kept.sections, *review_sections(study)))
+            core_result = core(result)
+            result = replace(core_result, sections=(*core_result.sections, *review_sections(study)))
         elif not full:
             result = core(result, tables.sources_of_numbers(study))
         return replace(result, verbatim=verbatim, bench=bench_of(study))
@@ -346,7 +346,7 @@ def _checks(study: Study) -> Section:
 
 def _provenance(study: Study) -> Section:
     """What went in: a short list of files here, a long one in the appendix."""
-    inputs = filled(tables.provenance(study), source_tables.made_from(study))
+    inputs = filled(tables.provenance(study), source_tables.inputs_table(study))
     words = text_of("acceptance.by_sha256")
     if many := (files := len(study.inputs)) > MANY:
         words = f"{files} input files; --full lists their sha256."

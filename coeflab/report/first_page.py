@@ -17,7 +17,7 @@ from coeflab.core.wording import listed, spelled_out
 from coeflab.fits import FITS
 from coeflab.fits.results.fit_result import FitResult, Sweep
 from coeflab.fits.results.straight_runs import SYMBOL
-from coeflab.law.coefficient import SAID, Coefficient, CoefficientSet, Status
+from coeflab.law.coefficient import NAMED_STATUSES, Coefficient, CoefficientSet, Status
 from coeflab.law.symbols import derivative, primed
 from coeflab.report.acceptance import Acceptance, by_basis, held
 from coeflab.report.answer_table import LONGEST, MOST_COLUMNS, MOST_MODELS, MOST_ROWS
@@ -25,7 +25,7 @@ from coeflab.report.document import Answer, AnswerRow, Chip, Document, Figure
 from coeflab.report.figures.first_page import axes_figure, forest_figure, renamed, shares_figure, slope_figure
 from coeflab.report.figures.model import model_figures
 from coeflab.report.figures.svg import size_of
-from coeflab.report.first_page_notes import MOST_NAMED, NO_DATA, Beside, notes
+from coeflab.report.first_page_notes import MOST_NAMED, NO_DATA, PublishedColumns, notes
 from coeflab.report.notation import keeping, users_texts
 from coeflab.report.reproduction import digest_of
 from coeflab.report.sections.campaign import anchor, moved_from
@@ -69,16 +69,16 @@ def answer(found: Study | Acceptance, *, drawn: bool = True) -> Answer:
 
 
 def _of_study(study: Study) -> Answer:
-    beside = _columns(study)
-    rows = tuple(_row(study, beside, symbol) for symbol in _wanted(study, beside.body))
-    compared = beside.columns[0].name if beside.columns else ""
-    names = tuple(r.name for r in beside.columns)
+    publications = _columns(study)
+    rows = tuple(_row(study, publications, symbol) for symbol in _wanted(study, publications.body))
+    compared = publications.columns[0].name if publications.columns else ""
+    names = tuple(r.name for r in publications.columns)
     if all(r.value is None for r in rows) and any(f.models for f in study.fits):
-        others = tuple(_row(study, beside, symbol) for symbol in _others(study, beside.body))
+        others = tuple(_row(study, publications, symbol) for symbol in _others(study, publications.body))
         if not others:
             return _of_models(study)
         rows = others
-    words, chips, below = _sentence(study, beside, rows), _chips(study), notes(study, beside, rows)
+    words, chips, below = _sentence(study, publications, rows), _chips(study), notes(study, publications, rows)
     lines = [_line(study, r) for r in rows] if study.plan.tows and names else []
     if any(x is not None for x in lines):
         names, below = (*names, NAME), (*below, MEANING_OF_LINE)
@@ -99,7 +99,7 @@ def _line(study: Study, row: AnswerRow) -> float | None:
     return line(tables, row.symbol, among.scaling.length) if tables and among is not None else None
 
 
-def _columns(study: Study) -> Beside:
+def _columns(study: Study) -> PublishedColumns:
     """The body that the answer is about, and what is published of it: quoted, re-analysed, then other bodies."""
     quoted = [r for r in study.references if r.relation is Relation.QUOTED]
     campaigns = {f.campaign: f.body for f in study.fits}
@@ -111,7 +111,7 @@ def _columns(study: Study) -> Beside:
     ]
     others = [r for r in study.references if r.relation is Relation.CROSS_BODY]
     fit = next((f for f in study.fits if f.body == body), None)
-    return Beside(body, tuple([*first, *others][:MOST_COLUMNS]), fit.coefficients if fit else None)
+    return PublishedColumns(body, tuple([*first, *others][:MOST_COLUMNS]), fit.coefficients if fit else None)
 
 
 def _wanted(study: Study, body: str) -> tuple[str, ...]:
@@ -131,19 +131,19 @@ def _others(study: Study, body: str) -> tuple[str, ...]:
     return tuple(dict.fromkeys(found))[:MOST_ROWS]
 
 
-def _row(study: Study, beside: Beside, symbol: str) -> AnswerRow:
-    found = [c for c in study.coefficients if c.symbol == symbol and c.body == beside.body]
+def _row(study: Study, publications: PublishedColumns, symbol: str) -> AnswerRow:
+    found = [c for c in study.coefficients if c.symbol == symbol and c.body == publications.body]
     judged = {(x.coefficient.symbol, x.coefficient.campaign): x for x in study.comparisons if x.passed is not None}
     known = sorted((c for c in found if c.value is not None), key=lambda c: (c.symbol, c.campaign) not in judged)
-    among = _set(study, known[0].campaign if known else None) or beside.among
-    pairs = [_published(study, r, beside.body, symbol, among) for r in beside.columns]
+    among = _set(study, known[0].campaign if known else None) or publications.among
+    pairs = [_published(study, r, publications.body, symbol, among) for r in publications.columns]
     published, printed = tuple(value for value, _ in pairs), tuple(text for _, text in pairs)
     if not known:
-        return replace(_towed_row(study, beside, symbol, published, found), printed=printed)
+        return replace(_towed_row(study, publications, symbol, published, found), printed=printed)
     c = known[0]
     rejected = c.status is Status.FORM_REJECTED
     row = AnswerRow(
-        symbol, c.value, None if rejected else c.u95, c.status.replace("_", " ") if c.status in SAID else "" if c.u95 else "no U95",
+        symbol, c.value, None if rejected else c.u95, c.status.replace("_", " ") if c.status in NAMED_STATUSES else "" if c.u95 else "no U95",
         c.campaign or "", published, anchor=_place(study, c), printed=printed,
         assumed=tuple(dict.fromkeys(str(f["key"]) for f in assumed_of(study, c))),
     )  # fmt: skip
@@ -175,10 +175,14 @@ def _judged(row: AnswerRow, verdict: Comparison | None) -> AnswerRow:
 
 
 def _towed_row(
-    study: Study, beside: Beside, symbol: str, published: tuple[float | None, ...], found: Sequence[Coefficient]
+    study: Study,
+    publications: PublishedColumns,
+    symbol: str,
+    published: tuple[float | None, ...],
+    found: Sequence[Coefficient],
 ) -> AnswerRow:
     """From an own tow that the plan sets beside these columns; else why there is no value."""
-    for tow in _tows(study, beside):
+    for tow in _tows(study, publications):
         own = next((r for r in tow.rows if r.symbol == symbol and r.value is not None), None)
         if own is not None and not own.is_result:
             return AnswerRow(symbol, None, None, NO_RESULT, tow.tow.campaign, published)
@@ -186,16 +190,18 @@ def _towed_row(
             row = AnswerRow(symbol, own.value, own.u95, "" if own.u95 else "no U95", tow.tow.campaign, published)
             return _judged(row, None)
     status = next((c.status for c in found if c.status is not Status.NO_TABLE), None)
-    if other := next((b for b, symbols in study.by_body.items() if b != beside.body and symbol in symbols), ""):
+    if other := next((b for b, symbols in study.by_body.items() if b != publications.body and symbol in symbols), ""):
         return AnswerRow(symbol, None, None, f"fitted for body {other}", published=published)
     return AnswerRow(symbol, None, None, NO_DATA if status is None else status.replace("_", " "), published=published)
 
 
-def _tows(study: Study, beside: Beside) -> tuple[Towed, ...]:
+def _tows(study: Study, publications: PublishedColumns) -> tuple[Towed, ...]:
     """Own tows of the body, or those that the plan sets beside the first column."""
-    names = {r.name for r in beside.columns[:1]}
+    names = {r.name for r in publications.columns[:1]}
     return (
-        tuple(t for t in towed(study) if t.body == beside.body or names & set(t.tow.columns)) if study.plan.tows else ()
+        tuple(t for t in towed(study) if t.body == publications.body or names & set(t.tow.columns))
+        if study.plan.tows
+        else ()
     )
 
 
@@ -242,17 +248,17 @@ def _short(title: str) -> str:
     return head if len(head) <= LONGEST // 3 else head[: LONGEST // 3].rsplit(" ", 1)[0].rstrip(",") + " ..."
 
 
-def _sentence(study: Study, beside: Beside, rows: tuple[AnswerRow, ...]) -> str:
+def _sentence(study: Study, publications: PublishedColumns, rows: tuple[AnswerRow, ...]) -> str:
     name = _short(study.plan.title or study.plan.name)
     judged = [r for r in rows if r.agrees is not None]
     valued = [r for r in rows if r.value is not None]
     kind = "static derivatives" if all(_is_static(r.symbol) for r in judged) else "derivatives"
     kind = kind if len(judged) != 1 else kind[:-1]
     several = len({f.body for f in study.fits}) > 1
-    absent = _absent(rows, f" for {beside.body.replace('_', ' ')}" if several and beside.body else "")
+    absent = _absent(rows, f" for {publications.body.replace('_', ' ')}" if several and publications.body else "")
     if judged:
         apart = [primed(r.symbol) for r in judged if not r.agrees]
-        column = beside.columns[0].name
+        column = publications.columns[0].name
         if apart:
             some = f"{spelled_out(len(apart))} of {spelled_out(len(judged))} {kind}"
             first = (
@@ -381,29 +387,31 @@ def _exports(study: Study) -> Chip:
     )
 
 
-def _drawn(found: Study | Acceptance, made: Answer) -> Answer:
+def _drawn(found: Study | Acceptance, result: Answer) -> Answer:
     """With its figures; of models, and of a publication, two that show what came out."""
     if isinstance(found, Acceptance):
         left = next((renamed(d, "answer-figure") for _, d in found.figures if len(d.svg) < LARGEST), None)
         right = shares_figure(found) if found.numbers else None
     else:
-        left = _slope(found, made)
-        right = forest_figure(made.rows, made.columns, made.compared) or forest_figure(made.rows, made.columns, "")
+        left = _slope(found, result)
+        right = forest_figure(result.rows, result.columns, result.compared) or forest_figure(
+            result.rows, result.columns, ""
+        )
         models = [m for f in found.fits for m in f.models]
         if models and (left is None or right is None):
             first, second = (*model_figures(models[0], "answer-model"), None, None)[:2]
             left, right = left or first, right or (second if left is None else first)
     is_tall = left is not None and size_of(left.svg)[1] > TALL
-    return replace(made, slope=left, forest=right, axes=None if is_tall else axes_figure())
+    return replace(result, slope=left, forest=right, axes=None if is_tall else axes_figure())
 
 
-def _slope(study: Study, made: Answer) -> Figure | None:
+def _slope(study: Study, result: Answer) -> Figure | None:
     """Of the first row that comes from a sweep about the study's point: points of another point do not end at its value."""
-    for r in made.rows:
+    for r in result.rows:
         f = next((f for f in study.fits if f.campaign == r.source and _has_slope(f, r.symbol)), None)
         at = None if f is None else f.sweep(r.symbol)
         if f is not None and at is not None and r.value is not None and not moved_from(f, at):
-            return slope_figure(at, r, made.compared, r.published[0] if r.published else None)
+            return slope_figure(at, r, result.compared, r.published[0] if r.published else None)
     return None
 
 
@@ -489,7 +497,7 @@ def acceptance_summary(found: Acceptance, whole: Document) -> Document:
     )
 
 
-def _unlinked(made: Answer) -> Answer:
+def _unlinked(result: Answer) -> Answer:
     """Without links to sections, of which a summary has none."""
-    rows = tuple(replace(r, anchor="") for r in made.rows)
-    return replace(made, rows=rows, chips=tuple(replace(c, anchor="") for c in made.chips))
+    rows = tuple(replace(r, anchor="") for r in result.rows)
+    return replace(result, rows=rows, chips=tuple(replace(c, anchor="") for c in result.chips))

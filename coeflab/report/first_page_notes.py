@@ -15,7 +15,7 @@ from coeflab.law.scaling import Scaling
 from coeflab.law.symbols import primed
 from coeflab.report.document import AnswerRow
 from coeflab.report.tables.budgets import SET_IN_A_COMPUTATION
-from coeflab.report.tables.results import lost_by_move
+from coeflab.report.tables.results import undetermined_by_move
 from coeflab.report.tables.sources import halves
 from coeflab.study.study import Study
 from coeflab.study.validation import by_measured_number, validations
@@ -27,7 +27,7 @@ NO_DATA = "no data"
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Beside:
+class PublishedColumns:
     """The published columns of one body.
 
     Attributes
@@ -45,43 +45,43 @@ class Beside:
     among: CoefficientSet | None
 
 
-def notes(study: Study, beside: Beside, rows: Sequence[AnswerRow]) -> tuple[str, ...]:
+def notes(study: Study, publications: PublishedColumns, rows: Sequence[AnswerRow]) -> tuple[str, ...]:
     """Sentences of three lines at most.
 
     Parameters
     ----------
     study : Study
-    beside : Beside
+    publications : Beside
     rows : sequence of AnswerRow
     """
     towed_rows = {t.campaign for t in study.plan.tows if t.campaign}
     sources = [s for s in dict.fromkeys(r.source for r in rows if r.source) if s not in towed_rows]
     out = []
     if sources:
-        scaling = beside.among.scaling if beside.among else None
+        scaling = publications.among.scaling if publications.among else None
         by = f" Primes use {scaling.length_name} = {scaling.length:.5g} m" if scaling else ""
-        if beside.among:
-            about = f"{point_in_words(beside.among.reference_point, beside.among.datum)}"
+        if publications.among:
+            about = f"{point_in_words(publications.among.reference_point, publications.among.datum)}"
             by += f"{'; moments are' if by else ' Moments are'} about {about}"
         out.append(f"Ours: coeflab's fits to {listed(_with_symbols(sources, rows))}.{by}{'.' * bool(by)}")
         if any(r.symbol == "Mw" and r.value is not None for r in rows):
             out += filter(None, dict.fromkeys(munk_in_words(f) for f in study.fits if f.campaign in sources))
     if keys := list(dict.fromkeys(k for r in rows for k in r.assumed)):
         out.append(f"{FLAG.strip()} assumed, not stated by the source: {listed(keys)} (see Checks).")
-    out += [*halves(study), *lost_by_move(study)]
+    out += [*halves(study), *undetermined_by_move(study)]
     own = [r for r in rows if r.source in towed_rows]
     if own:
         body = next((t.body for t in study.tables if t.campaign == own[0].source), "")
-        of = f", of body {body}" if body and body != beside.body else ""
+        of = f", of body {body}" if body and body != publications.body else ""
         out.append(f"{', '.join(primed(r.symbol) for r in own)}: our CFD {own[0].source}{of}; no verdict.")
     if any(r.agrees is not None for r in rows):
-        out.append(_the_authors(study, beside, rows))
+        out.append(_the_authors(study, publications, rows))
     out += filter(None, (_independent(study), _not_in_u95(study, rows)))
-    others = [r for r in beside.columns if r.relation is Relation.CROSS_BODY]
+    others = [r for r in publications.columns if r.relation is Relation.CROSS_BODY]
     for body in dict.fromkeys(r.body for r in others):
         names = listed([r.name for r in others if r.body == body])
         inferred = ", inferred" if any("body" in r.inferred for r in others if r.body == body) else ""
-        of = f"of another body ({body}{inferred})" if body != beside.body else "by another method"
+        of = f"of another body ({body}{inferred})" if body != publications.body else "by another method"
         are, get = ("is", "gets") if sum(r.body == body for r in others) == 1 else ("are", "get")
         out.append(f"{names} {are} {of} and {get} no verdict.")
     for r in others:
@@ -90,10 +90,10 @@ def notes(study: Study, beside: Beside, rows: Sequence[AnswerRow]) -> tuple[str,
     return tuple(n if len(n) <= MOST_LETTERS else f"{n[:MOST_LETTERS]} ..." for n in out)
 
 
-def _the_authors(study: Study, beside: Beside, rows: Sequence[AnswerRow]) -> str:
+def _the_authors(study: Study, publications: PublishedColumns, rows: Sequence[AnswerRow]) -> str:
     """What the compared column is, and by which tests of their own its authors have what no table here gives."""
-    column = beside.columns[0]
-    reports = [r for r in study.references if r.relation is Relation.RE_ANALYSIS and r.body == beside.body]
+    column = publications.columns[0]
+    reports = [r for r in study.references if r.relation is Relation.RE_ANALYSIS and r.body == publications.body]
     towed_rows = {t.campaign for t in study.plan.tows if t.campaign}
     methods: dict[str, list[str]] = {}
     for row in rows:

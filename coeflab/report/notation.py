@@ -83,7 +83,7 @@ class Command:
 
 
 @dataclass(frozen=True, slots=True)
-class Kept:
+class VerbatimTexts:
     """Texts of users that are set as they stand wherever a sentence holds them; by their beginnings, as titles are cut."""
 
     texts: tuple[str, ...]
@@ -92,7 +92,7 @@ class Kept:
 
 Run = str | Symbol | Raised | Command
 Given = ParamSpec("Given")
-Made = TypeVar("Made")
+Returned = TypeVar("Made")
 BEGINNING, SHORT = 20, 4
 # Nouns that a program may make of plain texts as well, and their fields that are words of a user.
 NAMED = (
@@ -109,7 +109,7 @@ NAMED = (
 )
 NAMES = ("name", "title", "campaign", "body", "datum")
 COVER = "\u0436"
-_KEPT: ContextVar[Kept | None] = ContextVar("kept", default=None)
+_VERBATIM: ContextVar[VerbatimTexts | None] = ContextVar("kept", default=None)
 
 _ANGLES = "|".join(GREEK)
 _VARIABLE = r"(?:d[rsb]|[uvwpqr](?:dot)?)"
@@ -184,29 +184,29 @@ def _looks_like_symbols(text: str) -> bool:
 def keeping(texts: Iterable[str]) -> Iterator[None]:
     """Set these texts of users as they stand within the block, in sentences, cells and drawings."""
     flat = tuple(sorted({" ".join(t.split()) for t in texts} - {""}))
-    before = _KEPT.set(Kept(flat, _beginnings(flat)))
+    before = _VERBATIM.set(VerbatimTexts(flat, _beginnings(flat)))
     try:
         yield
     finally:
-        _KEPT.reset(before)
+        _VERBATIM.reset(before)
 
 
-def as_users_wrote(make: Callable[Given, Made]) -> Callable[Given, Made]:
+def as_users_wrote(make: Callable[Given, Returned]) -> Callable[Given, Returned]:
     """Let a maker of drawings set the users' texts in its arguments as they stand, unless a block says which."""
 
     @wraps(make)
-    def made(*given: Given.args, **more: Given.kwargs) -> Made:
-        if kept() is not None:
+    def wrapped(*given: Given.args, **more: Given.kwargs) -> Returned:
+        if verbatim() is not None:
             return make(*given, **more)
         with keeping(users_texts(*given, *more.values())):
             return make(*given, **more)
 
-    return made
+    return wrapped
 
 
-def kept() -> Kept | None:
+def verbatim() -> VerbatimTexts | None:
     """The texts of users that are set as they stand just now."""
-    return _KEPT.get()
+    return _VERBATIM.get()
 
 
 def _beginnings(texts: tuple[str, ...]) -> re.Pattern[str]:
@@ -216,15 +216,17 @@ def _beginnings(texts: tuple[str, ...]) -> re.Pattern[str]:
     return one_of([*long, *short])
 
 
-def _covered(text: str, kept: Kept | None) -> str:
+def _covered(text: str, verbatim: VerbatimTexts | None) -> str:
     """The text, of equal length, with a neutral letter for every one of a user's."""
-    if kept is None or not kept.texts:
+    if verbatim is None or not verbatim.texts:
         return text
     places = [i for i, ch in enumerate(text) if not (ch.isspace() and i and text[i - 1].isspace())]
     flat = "".join(" " if text[i].isspace() else text[i] for i in places)
-    spans = [(m.start(), m.start() + _longest(m[0], flat[m.start() :], kept)) for m in kept.beginnings.finditer(flat)]
+    spans = [
+        (m.start(), m.start() + _longest(m[0], flat[m.start() :], verbatim)) for m in verbatim.beginnings.finditer(flat)
+    ]
     if flat.endswith("…"):
-        spans.append((len(flat) - 1 - _last_cut(flat[:-1], kept), len(flat) - 1))
+        spans.append((len(flat) - 1 - _last_cut(flat[:-1], verbatim), len(flat) - 1))
     out = list(text)
     for start, end in spans:
         for i in range(places[start], places[end - 1] + 1) if start < end else ():
@@ -232,15 +234,16 @@ def _covered(text: str, kept: Kept | None) -> str:
     return "".join(out)
 
 
-def _longest(beginning: str, rest: str, kept: Kept) -> int:
+def _longest(beginning: str, rest: str, verbatim: VerbatimTexts) -> int:
     """How many characters of the rest are a user's text that begins so."""
-    return max(_agreement(t, rest) for t in kept.texts if t.startswith(beginning))
+    return max(_agreement(t, rest) for t in verbatim.texts if t.startswith(beginning))
 
 
-def _last_cut(text: str, kept: Kept) -> int:
+def _last_cut(text: str, verbatim: VerbatimTexts) -> int:
     """How many characters at the end of a text that was cut are the beginning of a user's, too short to be found."""
     return max(
-        (k for k in range(1, BEGINNING) for t in kept.texts if len(t) > k and text.endswith(t[:k].rstrip())), default=0
+        (k for k in range(1, BEGINNING) for t in verbatim.texts if len(t) > k and text.endswith(t[:k].rstrip())),
+        default=0,
     )
 
 
@@ -249,14 +252,14 @@ def _agreement(a: str, b: str) -> int:
     return next((i for i, (x, y) in enumerate(zip(a, b)) if x != y), min(len(a), len(b)))
 
 
-def runs(text: str, kept: Kept | None = None) -> tuple[Run, ...]:
+def runs(text: str, verbatim: VerbatimTexts | None = None) -> tuple[Run, ...]:
     """A sentence in pieces: plain text with proper minus signs, symbols, exponents.
 
     Parameters
     ----------
     text : str
         For example ``Yv' = -0.0273 at beta = 2 deg``.
-    kept : Kept, optional
+    verbatim : Kept, optional
         Texts of users, in which nothing is a symbol.
 
     Returns
@@ -264,7 +267,7 @@ def runs(text: str, kept: Kept | None = None) -> tuple[Run, ...]:
     tuple
         Never two plain pieces in a row. A text with ``$`` or a backslash is somebody's markup: one plain piece.
     """
-    covered = _covered(text, kept)
+    covered = _covered(text, verbatim)
     if "$" in covered or "\\" in covered:
         return (text,)
     out: list[Run] = []
@@ -275,10 +278,10 @@ def runs(text: str, kept: Kept | None = None) -> tuple[Run, ...]:
     return _joined([*out, text[at:]])
 
 
-def cell_runs(text: str, kept: Kept | None = None) -> tuple[Run, ...]:
+def cell_runs(text: str, verbatim: VerbatimTexts | None = None) -> tuple[Run, ...]:
     """A table's cell in pieces: as `runs`, and a cell that is nothing but a derivative is one without its prime too."""
-    if _covered(text, kept) != text:
-        return runs(text, kept)
+    if _covered(text, verbatim) != text:
+        return runs(text, verbatim)
     if text == "-":
         return ("\u2013",)
     if text in _UNITS:
@@ -389,12 +392,12 @@ Part = tuple[str, bool, float]
 
 def html(text: str) -> str:
     """A sentence or a heading as HTML; every character of a user's is a text."""
-    return _html(text, kept())
+    return _html(text, verbatim())
 
 
 @lru_cache(REMEMBERED)
-def _html(text: str, kept: Kept | None) -> str:
-    return _page(text, runs(text, kept))
+def _html(text: str, verbatim: VerbatimTexts | None) -> str:
+    return _page(text, runs(text, verbatim))
 
 
 def html_with(text: str, marks: Callable[[str], Iterable[tuple[int, int, str, str]]]) -> str:
@@ -407,7 +410,7 @@ def html_with(text: str, marks: Callable[[str], Iterable[tuple[int, int, str, st
         Gets the text with a neutral letter for every one of a user's, and gives in order, without overlap: beginning, end,
         and what stands before and after as HTML. A mark that would cut a symbol in two is left out.
     """
-    covered = _covered(text, kept())
+    covered = _covered(text, verbatim())
     tokens = [] if "$" in covered or "\\" in covered else list(_TOKENS.finditer(covered))
     out, at = [], 0
     for start, end, before, after in marks(covered):
@@ -431,12 +434,12 @@ def _between(text: str, tokens: Sequence[re.Match[str]], start: int, end: int) -
 
 def cell_html(text: str) -> str:
     """A table's cell as HTML."""
-    return _cell_html(text, kept())
+    return _cell_html(text, verbatim())
 
 
 @lru_cache(REMEMBERED)
-def _cell_html(text: str, kept: Kept | None) -> str:
-    return _page(text, cell_runs(text, kept))
+def _cell_html(text: str, verbatim: VerbatimTexts | None) -> str:
+    return _page(text, cell_runs(text, verbatim))
 
 
 def unit_html(text: str) -> str:
@@ -446,12 +449,12 @@ def unit_html(text: str) -> str:
 
 def label(text: str) -> str:
     """A text in letters alone, for places that know no other: ``v'^3`` is v′³."""
-    return _label(text, kept())
+    return _label(text, verbatim())
 
 
 @lru_cache(REMEMBERED)
-def _label(text: str, kept: Kept | None) -> str:
-    return visible("".join(_letters(piece) for piece in cell_runs(text, kept)))
+def _label(text: str, verbatim: VerbatimTexts | None) -> str:
+    return visible("".join(_letters(piece) for piece in cell_runs(text, verbatim)))
 
 
 def unit_label(text: str) -> str:
@@ -461,13 +464,15 @@ def unit_label(text: str) -> str:
 
 def drawn(text: str) -> str:
     """The inside of an SVG ``<text>`` element."""
-    return _drawn(text, kept())
+    return _drawn(text, verbatim())
 
 
 @lru_cache(REMEMBERED)
-def _drawn(text: str, kept: Kept | None) -> str:
+def _drawn(text: str, verbatim: VerbatimTexts | None) -> str:
     out, before = [], 0.0
-    for letters, slanted, level in _joined_lettering(part for piece in cell_runs(text, kept) for part in _parts(piece)):
+    for letters, slanted, level in _joined_lettering(
+        part for piece in cell_runs(text, verbatim) for part in _parts(piece)
+    ):
         size = SMALL if level else 1.0
         look = ' font-style="italic"' * slanted + f' font-size="{SMALL}em"' * bool(level)
         if level != before:
@@ -482,8 +487,8 @@ def _page(text: str, pieces: Sequence[Run]) -> str:
     return _directed(text, "".join(_element(piece) for piece in pieces).replace("</i><i>", ""))
 
 
-def _directed(text: str, made: str) -> str:
-    return f"<bdi>{made}</bdi>" if runs_to_the_left(text) else made
+def _directed(text: str, wrapped: str) -> str:
+    return f"<bdi>{wrapped}</bdi>" if runs_to_the_left(text) else wrapped
 
 
 def _element(piece: Run) -> str:

@@ -60,13 +60,13 @@ def _card(make: Maker) -> Callable[[Any], str]:
     """Parts of a noun as one card; what users wrote is set as they wrote it, ids are the card's own."""
 
     @wraps(make)
-    def made(noun: Any) -> str:
+    def wrapped(noun: Any) -> str:
         with keeping(users_texts(noun)):
             content = "".join(make(noun))
         own = f"c{hashlib.sha256(content.encode()).hexdigest()[:10]}"
         return f'<div class="coeflab"><style>{_style()}</style>{content.replace(DRAFT, own)}</div>'
 
-    return made
+    return wrapped
 
 
 @cache
@@ -76,9 +76,9 @@ def _style() -> str:
     return f"\n{style}.coeflab {{\n{symbols}}}\n"
 
 
-def _heading(said: str, *about: str) -> Part:
+def _heading(title: str, *about: str) -> Part:
     lines = "".join(f'<p class="about">{html(a)}</p>' for a in about if a)
-    return f'<p class="said">{html(said)}</p>{lines}'
+    return f'<p class="said">{html(title)}</p>{lines}'
 
 
 def _parts(*several: Part) -> Part:
@@ -136,7 +136,7 @@ def _absent(status: str) -> Part:
     return f'<span class="absent">{escape(status)}</span>'
 
 
-def _bar(low: float, high: float, mark: float, ticks: Sequence[float], span: tuple[float, float], said: str) -> Part:
+def _bar(low: float, high: float, mark: float, ticks: Sequence[float], span: tuple[float, float], title: str) -> Part:
     """A bar with a mark over a scale, what lies beyond it cut off at an open end."""
     scale = WIDE / (span[1] - span[0])
     at = [(min(max(v, span[0]), span[1]) - span[0]) * scale for v in (low, high, mark)]
@@ -148,7 +148,7 @@ def _bar(low: float, high: float, mark: float, ticks: Sequence[float], span: tup
     ends = [x for x, v in ((2.0, low), (WIDE - 2.0, high)) if (v < span[0] if x < WIDE / 2.0 else v > span[1])]
     open_ = "".join(f'<circle cx="{x:g}" cy="{TALL / 2:g}" r="2" fill="{AGAINST}"/>' for x in ends)
     return (
-        f'<svg viewBox="0 0 {WIDE:g} {TALL:g}" role="img" aria-label="{escape(said)}"><title>{escape(said)}</title>{lines}'
+        f'<svg viewBox="0 0 {WIDE:g} {TALL:g}" role="img" aria-label="{escape(title)}"><title>{escape(title)}</title>{lines}'
         f'<rect x="{at[0]:.1f}" y="4" width="{width:.1f}" height="6" fill="{OURS}" fill-opacity="0.55"/>'
         f'<path d="M{at[2]:.1f} 2V12" stroke="{OURS}" stroke-width="2"/>{open_}</svg>'
     )

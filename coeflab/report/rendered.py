@@ -33,20 +33,20 @@ def rendered(study: Study, formats: Sequence[str] = ("html",)) -> dict[str, byte
 
 
 @one_thread()
-def replaced_files(made: Merged, moves: Sequence[Simulation], carried: Sequence[Carried]) -> dict[str, bytes]:
+def replaced_files(result: Merged, moves: Sequence[Simulation], carried: Sequence[Carried]) -> dict[str, bytes]:
     """The merged parameter file with its tables, and a report of it, by name.
 
     Parameters
     ----------
-    made : Merged
+    result : Merged
     moves : sequence of Simulation
     carried : sequence of Carried
         Of `replaced`.
     """
-    p = made.parameters
+    p = result.parameters
     moved_so = Section("manoeuvres", "First manoeuvres", tables=(manoeuvre_table(moves, carried),))
-    page = Document(p.name, f"Estimates of {p.body} and what replaced them", (replaced_section(made, carried), moved_so), p.name,
-                    digest_of(p.provenance.inputs), answer=answer_of_merge(made, moves, carried))  # fmt: skip
+    page = Document(p.name, f"Estimates of {p.body} and what replaced them", (replaced_section(result, carried), moved_so), p.name,
+                    digest_of(p.provenance.inputs), answer=answer_of_merge(result, moves, carried))  # fmt: skip
     files = parameter_files_rendered([p])
     with REPORTERS.guarded("html"):
         files.update(REPORTERS.load("html").render(page))

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from coeflab import estimates as methods
-from coeflab.bodies.added_masses import added_masses, beside_walls
+from coeflab.bodies.added_masses import added_masses, wall_sweep
 from coeflab.bodies.body import Body
 from coeflab.bodies.drafted import drafted, is_untouched
 from coeflab.bodies.mesh.file import SELF_DESCRIBED
@@ -46,7 +46,7 @@ from coeflab.vehicle.force_law import ahead_from
 from coeflab.vehicle.from_shape import CLOSED, ESTIMATES, Stated, as_fit, by_series, equipped, lacking, weighed
 from coeflab.vehicle.held_to_model import Motions, held_to_model
 from coeflab.vehicle.merge import Merged, estimates_of, merged
-from coeflab.vehicle.parameter_file import ParameterFile, read_parameter_file, refusals_told
+from coeflab.vehicle.parameter_file import ParameterFile, read_parameter_file, located_refusals
 
 NOTHING = Stated()
 Progress = Callable[[str], None]
@@ -95,7 +95,7 @@ def from_shape(
     files: dict[str, ParameterFile] = dict(study.parameter_files)
     heavy, vehicle = shape.weighed, next(iter(files.values()))
     standing = fins_along(heavy.body.outline) if heavy.body.outline is not None else None
-    words = [*shape.said, *_drift_limit(vehicle), *([standing.words] if standing is not None else [])]
+    words = [*shape.statements, *_drift_limit(vehicle), *([standing.words] if standing is not None else [])]
     words.extend(by_series(heavy.body, shape.conditions.speed))
     planned = manoeuvres_of(plan.manoeuvres, files, progress)
     moves, troubles = (planned, ()) if planned else first_manoeuvres(vehicle, progress)
@@ -109,7 +109,7 @@ def from_shape(
     )
     carried, why = _carried(vehicle, moves, progress)
     missing = (*lacking(heavy.body, vehicle, heavy.assumed, bool(_steered(vehicle))), *troubles, *why)
-    shape = replace(shape, said=tuple(words), missing=missing, carried=carried)
+    shape = replace(shape, statements=tuple(words), missing=missing, carried=carried)
     return replace(study, parameter_files=files, exports=exports, refused=refused, manoeuvres=moves, shape=shape)
 
 
@@ -161,7 +161,7 @@ def estimated(
     walls: tuple[NearWall, ...] = ()
     if wall:
         progress(f"added mass of {body.name} near a wall")
-        near = beside_walls(heavy.body, conditions.density, wall, distances)
+        near = wall_sweep(heavy.body, conditions.density, wall, distances)
         walls = tuple(NearWall(wall, d, n.matrix) for d, n in zip(sorted(set(distances)), near, strict=True))
     progress(f"estimates of {body.name}")
     water = methods.Water(conditions.density, float(conditions.viscosity or 0.0), conditions.speed)
@@ -172,9 +172,9 @@ def estimated(
     inputs = tuple(dict.fromkeys(([plan.file] if plan.file else []) + list(body.files)))
     for group in plan.parameter_files or (PlannedParameterFile(stem(body.name), body.name, (ESTIMATES,), ()),):
         taken = replace(group, body=body.name, campaigns=(ESTIMATES,))
-        with refusals_told(f"parameter_file.{group.name}"[:80]):
+        with located_refusals(f"parameter_file.{group.name}"[:80]):
             first = assemble(taken, plan.name, [fit], [], [], (), heavy.body, conditions, inputs, found)
-            notes = (*first.provenance.notes, *heavy.said, *words, *result.notes)
+            notes = (*first.provenance.notes, *heavy.statements, *words, *result.notes)
             first = first.model_copy(update={"provenance": first.provenance.model_copy(update={"notes": notes})})
             if walls and first.added_mass is not None:
                 first = first.model_copy(update={"added_mass": replace(first.added_mass, walls=walls)})
@@ -182,17 +182,17 @@ def estimated(
         hulls[group.name] = found
     return Study(
         plan=plan, tables=(), fits=(fit,), missing=(), body=heavy.body, references=(), comparisons=(),
-        parameter_files=files, hulls=hulls, inputs=inputs, shape=FromShape(heavy, result, conditions, (*heavy.said, *words)),
+        parameter_files=files, hulls=hulls, inputs=inputs, shape=FromShape(heavy, result, conditions, (*heavy.statements, *words)),
     )  # fmt: skip
 
 
-def compared(parameters: ParameterFile, made: methods.Estimates, moves: Sequence[Simulation]) -> ParameterFile:
+def compared(parameters: ParameterFile, estimates: methods.Estimates, moves: Sequence[Simulation]) -> ParameterFile:
     """The file with what its law leaves out of the estimates' own forces, over the states of manoeuvres.
 
     Parameters
     ----------
     parameters : ParameterFile
-    made : Estimates
+    estimates : Estimates
         Whose forces the law stands for.
     moves : sequence of Simulation
     """
@@ -202,7 +202,7 @@ def compared(parameters: ParameterFile, made: methods.Estimates, moves: Sequence
         if len(s.trajectory.time)
         for rows in [np.unique(np.linspace(0, len(s.trajectory.time) - 1, STATES).astype(int))]
     ]
-    found = held_to_model(parameters, made.forces, "estimates", over)
+    found = held_to_model(parameters, estimates.forces, "estimates", over)
     return parameters.model_copy(update={"findings": (*parameters.findings, *found)}) if found else parameters
 
 

@@ -100,25 +100,25 @@ def rejoined(
     out, joined = list(fits), list[int]()
     for i, f in enumerate(fits):
         given = {s for g in fits if _completes(g, f) for s in g.coefficients.available}
-        if not set(_lost(f)) - given:
+        if not set(_undetermined(f)) - given:
             continue
         name, tables, scaling, options = asked[i]
         point, first = f.coefficients.reference_point, tables[0]
         at = first.point if isinstance(first, PlanarMotionTable) else point + np.array([arm_shift(tables), 0.0, 0.0])
-        beside = [
+        rest = [
             k for k, g in enumerate(fits)
             if k != i and not _completes(g, f) and _of_one_body(f, g, unnamed_alike) and g.coefficients.datum == f.coefficients.datum
             and g.coefficients.scaling == f.coefficients.scaling
         ]  # fmt: skip
         own, _ = fitted(name, [t.about(at) for t in tables], scaling, options)
-        here = fits_about([own, *(fits[k] for k in beside)], point)
+        here = fits_about([own, *(fits[k] for k in rest)], point)
         out[i] = here[0]
         joined.append(i)
-        for k, g in zip(beside, here[1:], strict=True):
+        for k, g in zip(rest, here[1:], strict=True):
             if np.allclose(fits[k].coefficients.reference_point, point):
-                kept = tuple(s for s in out[k].shared if (s.fit, s.campaign) != (f.fit, f.campaign))
+                shared = tuple(s for s in out[k].shared if (s.fit, s.campaign) != (f.fit, f.campaign))
                 mine = tuple(s for s in g.shared if (s.fit, s.campaign) == (f.fit, f.campaign))
-                out[k] = replace(out[k], shared=(*kept, *mine))
+                out[k] = replace(out[k], shared=(*shared, *mine))
     for j, i in [(j, i) for j in joined for i, g in enumerate(fits) if _completes(g, fits[j])]:
         others = [
             h for h in out
@@ -187,7 +187,7 @@ def _of_one_body(f: FitResult, g: FitResult, unnamed_alike: bool) -> bool:
     return f.body == g.body or (unnamed_alike and all(one.body == one.campaign for one in (f, g)))
 
 
-def _lost(f: FitResult) -> list[str]:
+def _undetermined(f: FitResult) -> list[str]:
     """Slopes that a fit has about its own point and not about its tables'."""
     own = [*(s.symbol for s in f.sweeps if s.value is not None), *(o.symbol for o in f.oscillations)]
     return [s for s in own if s in f.coefficients and f.coefficients[s].status is Status.NOT_DETERMINED]

@@ -310,7 +310,7 @@ def of_manoeuvre(parameters: ParameterFile, name: str, question: Question) -> Wa
 
 def next_tests(
     wanted: Wanted, coefficients: Sequence[Coefficient], sweeps: Sequence[Sweep], ranges: Ranges, runs: int, noise: float | None,
-    *, target: float | None = None, computed: bool = False, given: Finding | None = None, beside: Sequence[Sweep] = (),
+    *, target: float | None = None, computed: bool = False, given: Finding | None = None, others: Sequence[Sweep] = (),
 ) -> NextTests:  # fmt: skip
     """Tests by what they take off the variance of a figure, each with the settings of its best runs.
 
@@ -333,7 +333,7 @@ def next_tests(
         Runs repeat the same number, so no setting twice.
     given : Finding, optional
         What the question was asked of.
-    beside : sequence of Sweep
+    others : sequence of Sweep
         Of rows behind a joint fit, whose scatter alone counts.
 
     Raises
@@ -349,7 +349,7 @@ def next_tests(
     known = {c.symbol.removesuffix("'"): c for c in coefficients}
     ran = {s.symbol: s for s in reversed(sweeps) if s.parity == "odd" and s.value is not None}
     assumed: list[str] = []
-    scatter = {c: v for c, v in _scatter((*beside, *ran.values())).items() if noise is None}
+    scatter = {c: v for c, v in _scatter((*others, *ran.values())).items() if noise is None}
     of_rows: dict[str, float] = {}
     out = []
     for (kind, variable), symbols in groups.items():

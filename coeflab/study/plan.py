@@ -61,8 +61,8 @@ def _derivatives(value: Any, file: Path) -> tuple[str, ...]:
 
 def _parameters(value: Any, file: Path) -> Path:
     name = takes.text_of(value, file)
-    beside = typed(file.parent / name)
-    return beside if beside.is_file() else named(name, SHIPPED)
+    found = typed(file.parent / name)
+    return found if found.is_file() else named(name, SHIPPED)
 
 
 class Place(NamedTuple):
@@ -76,8 +76,8 @@ def _place(value: Any, file: Path) -> Place:
     """A list, or words as readers of tables take them: ``-1.6 from nose``, ``midship``."""
     if not isinstance(value, str):
         return Place(np.array(takes.POINT.read(value, file)))
-    said = read_settings(POINT_OF, value)
-    return Place(np.array(said[POINT_OF], dtype=float), said.get("axes.datum", ""))
+    given = read_settings(POINT_OF, value)
+    return Place(np.array(given[POINT_OF], dtype=float), given.get("axes.datum", ""))
 
 
 Options = Annotated[Mapping[str, Any], takes.TABLE]

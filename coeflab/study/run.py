@@ -27,7 +27,7 @@ from coeflab.study.study import Conversion, Plan, Study
 from coeflab.study.symmetry import confirmed, of_bodies
 from coeflab.tables.reading import read_tables, table_at
 from coeflab.vehicle.assemble import PlannedParameterFile, assemble
-from coeflab.vehicle.parameter_file import read_parameter_file, refusals_told
+from coeflab.vehicle.parameter_file import read_parameter_file, located_refusals
 from coeflab.vehicle.published_values import compare, compare_set, read_references
 
 if TYPE_CHECKING:
@@ -155,7 +155,7 @@ def run(plan: Plan | str | Path, progress: Progress = lambda _: None) -> Study:
     inputs = _inputs(plan, tables, [b for b in (body, *(h.body for h in hulls.values())) if b is not None])
     files = {}
     for g in groups:
-        with refusals_told(f"parameter_file.{g.name}"[:80]):
+        with located_refusals(f"parameter_file.{g.name}"[:80]):
             files[g.name] = assemble(
                 g, plan.name, fits, tables, missing, references, body, conditions, inputs, hulls.get(g.name)
             )

@@ -175,7 +175,7 @@ class FromShape:
         The body with its mass, and what is assumed.
     estimates : Estimates
     conditions : Conditions
-    said : tuple of str
+    statements : tuple of str
         Mass against displacement, then what is assumed.
     missing : tuple of str
         For a manoeuvre under way, with what to write.
@@ -186,7 +186,7 @@ class FromShape:
     weighed: Weighed
     estimates: Estimates
     conditions: Conditions
-    said: tuple[str, ...]
+    statements: tuple[str, ...]
     missing: tuple[str, ...] = ()
     carried: tuple[Carried, ...] = ()
 

@@ -76,7 +76,7 @@ def of_bodies(
     """
     from coeflab.bodies.images import is_fourfold
 
-    kept, right, found = [], set(), []
+    selected, right, found = [], set(), []
     moving = {t.name: set(t.varies) for t in tables}
     for t in tables:
         turned = FOURFOLD in t.symmetry and moving[t.name] != moving.get(t.by_symmetry, moving[t.name])
@@ -85,9 +85,9 @@ def of_bodies(
         if has is False:
             found.append(Finding.of("symmetry.body", t.name, Severity.WARN, turned=t.by_symmetry, body=t.body))
             continue
-        kept.append(t)
+        selected.append(t)
         right |= {t.name} if has else set()
-    return kept, frozenset(right), found
+    return selected, frozenset(right), found
 
 
 def confirmed(fit: FitResult, by_body: frozenset[str]) -> FitResult:

@@ -64,17 +64,17 @@ def settings_of(table: ForceTable) -> dict[str, Array]:
     return out | {"speed": np.log(table.speed)}
 
 
-def sweeps_of(table: ForceTable, kept: NDArray[np.bool_]) -> Iterator[Sweep]:
+def sweeps_of(table: ForceTable, selected: NDArray[np.bool_]) -> Iterator[Sweep]:
     """Sweeps of at least three settings among the rows that are kept, variable by variable."""
     settings = settings_of(table)
     labels = np.column_stack([levels(x) for x in settings.values()])
     names = list(settings)
     for k, name in enumerate(names):
-        if len(np.unique(labels[kept, k])) < 3:
+        if len(np.unique(labels[selected, k])) < 3:
             continue
         others = np.delete(labels, k, axis=1)
-        for group in np.unique(others[kept], axis=0):
-            rows = np.flatnonzero(kept & (others == group).all(1))
+        for group in np.unique(others[selected], axis=0):
+            rows = np.flatnonzero(selected & (others == group).all(1))
             x = settings[name][rows]
             x = table.speed[rows] if name == "speed" else np.sin(x) if name in ("alpha", "beta") else x
             rest = {

@@ -124,7 +124,7 @@ class Cut:
     plane : str
     symmetry : str
         That a body has which is its own image in the plane.
-    doubled, lost : tuple of str
+    doubled, cancelled : tuple of str
         Of X Y Z K M N, FRD.
     carries_no : str
         The lost ones in words.
@@ -137,7 +137,7 @@ class Cut:
     plane: str
     symmetry: str
     doubled: tuple[str, ...]
-    lost: tuple[str, ...]
+    cancelled: tuple[str, ...]
     carries_no: str
     across: tuple[str, ...]
     controls: tuple[str, ...]

@@ -33,7 +33,7 @@ OF_MOTION = re.compile(r"\b(?:velocit(?:y|ies)|speed|angle|inflow)\b")
 SETTING_NAMES = frozenset(SETTINGS)
 MOST_SILENT = 3  # remarks of runs that a complaint about their conditions repeats
 FINE = 0.01  # of the largest mean of a component: a standard error below it is small enough, however short the history
-KEPT = {
+STATUS_WORDS = {
     Convergence.FINAL: "taken as they stand: without a history they have no standard error",
     Convergence.SHORT: f"as every error, the range of the plateau in it, is below {100 * FINE:g} % of the largest mean of its component",
     Convergence.TOO_SHORT: "of which what is too short is marked as uncertain and not used",
@@ -213,7 +213,7 @@ def _broken_off(runs: Sequence[RunSummary]) -> list[RunSummary]:
         end = f"{max(ends):g}" if len(ends) == 1 else f"{min(ends):g} to {max(ends):g}"
         why = f"ends at {r.last:g}{' within a line' * (r.is_cut and cut_is_news)}, the others at {end}"
         return replace(
-            r, status=Convergence.CRASHED, why=why, means={}, errors={}, units={}, headers={}, by_name=False, beside={},
+            r, status=Convergence.CRASHED, why=why, means={}, errors={}, units={}, headers={}, by_name=False, other_columns={},
             unsure={}, patches={}, start=math.nan, start_unit="", averaged="", window=0,
         )  # fmt: skip
 
@@ -325,7 +325,7 @@ def _remarks(
         alike = [s for s in summaries if s.status is status and not _lacks_forces(s)]
         if not alike:
             continue
-        what = KEPT.get(status, "which have no numbers")
+        what = STATUS_WORDS.get(status, "which have no numbers")
         outside = sum(s.name not in in_table for s in alike)
         what += f"; {outside} without a known condition are left out" if outside else ""
         out.append(f"{len(alike)} {status}, {what}: {_with_reasons(alike)}.")

@@ -24,7 +24,7 @@ from coeflab.tables.raw_table import RawColumn, RawTable
 from coeflab.tables.vocabulary import folded, vocabulary
 from coeflab.tables.words.axes import BODY_AXES
 
-BESIDE_WIND = "lift, drag and moments are there as coefficients already"
+GIVEN_AS_COEFFICIENTS = "lift, drag and moments are there as coefficients already"
 TURNED_WIND = "lift and drag turned by alpha, in every row"
 PROPELLER = "a coefficient of the propeller, by its name beside J"
 OF_PROPELLER = frozenset({"ct", "cp", "cq", "kt", "kq", "10kq"})
@@ -64,12 +64,12 @@ def proposals(
         if column.name in turned:
             one = Proposal("ignore", TURNED_WIND, note=TURNED_WIND)
         else:
-            one = by_said_area(_of_company(proposed(column, stated), column, pure, names, frame, stated), known or {})
+            one = by_stated_area(_of_company(proposed(column, stated), column, pure, names, frame, stated), known or {})
         one = replace(one, certain=False) if offered and "coefficient" in one.text else one
         one = _along_the_body(one, column, raw.stated[BODY_AXES].place) if BODY_AXES in raw.stated else one
         if one.why == UNKNOWN and column is raw.columns[0] and _is_index(column):
             one = Proposal("point", "it counts the rows")
-        given = one.said
+        given = one.meaning
         if given is not None and given.name not in ("label", "ignore"):
             if given.name == "point" and (given.plain in taken or _repeats(column)):
                 one = Proposal("label", f"{one.why}, but rows share it" if _repeats(column) else one.why, one.certain)
@@ -90,7 +90,7 @@ def proposals(
                 taken[given.plain] = column.name
         out.append(one)
     if "drag" in taken and not {"side", "lift"} & set(taken) and (body := next((c for c in "YZ" if c in taken), "")):
-        out = [_beside_the_body(one, taken[body], body) for one in out]
+        out = [_or_body_force(one, taken[body], body) for one in out]
     if len(doubles := [o for o in out if not o.text and o.why.endswith(" already")]) > FEW_STRANGE:
         out = [replace(o, text="ignore", note=o.why) if o in doubles else o for o in out]
     out = _without_strangers(raw, out)
@@ -99,8 +99,8 @@ def proposals(
         over = {"drag"} - {
             read_column_map(n).name for c in raw.columns if (n := named_as(c.name)) in ("Y", "N", "side")
         }
-        beside = ({"alpha", "beta", "R"} | over) & set(taken) and not {"U", "v"} & set(taken)
-        if beside and column.name.strip() == "V" and out[i].why.startswith(UNKNOWN) and fits(column.unit, "speed"):
+        companion = ({"alpha", "beta", "R"} | over) & set(taken) and not {"U", "v"} & set(taken)
+        if companion and column.name.strip() == "V" and out[i].why.startswith(UNKNOWN) and fits(column.unit, "speed"):
             out[i] = Proposal(f"U [{column.unit}]", "its unit, beside an angle or a radius")
             taken["U"] = column.name
         if folded(column.name) in vocabulary().lists["ship"] and taken.get("U", column.name) != column.name:
@@ -122,17 +122,17 @@ def _is_index(column: RawColumn) -> bool:
 
 def _without_lone_errors(out: Sequence[Proposal]) -> list[Proposal]:
     """A standard error whose force is left out goes with it."""
-    valued = {m.name for one in out if (m := one.said) is not None and not m.error}
-    lone = [(m := one.said) is not None and m.error and m.name not in valued for one in out]
+    valued = {m.name for one in out if (m := one.meaning) is not None and not m.error}
+    lone = [(m := one.meaning) is not None and m.error and m.name not in valued for one in out]
     return [
-        Proposal("ignore", f"no column {one.said.name}") if o and one.said else one
+        Proposal("ignore", f"no column {one.meaning.name}") if o and one.meaning else one
         for one, o in zip(out, lone, strict=True)
     ]
 
 
 def _without_a_doubled_flow(raw: RawTable, out: Sequence[Proposal]) -> Iterator[Proposal]:
     """Of angles of the flow beside components of the speed those that are zeros throughout say nothing."""
-    roles = [one.said for one in out]
+    roles = [one.meaning for one in out]
     still = [not np.any(np.nan_to_num(c.values)) for c in raw.columns]
     both = [
         ("angle" if m.role == "angle" else "speed")
@@ -208,30 +208,30 @@ def _of_company(
         note = f"a Froude number by its values; Z [{OPEN}] if it is a force"
         return Proposal("ignore", note, note=note * (bare == "fn"))
     own = {vocabulary().coefficients.get(name) for name in pure}
-    name = one.said.name if one.said else ""
+    name = one.meaning.name if one.meaning else ""
     place = column.name.strip() in ("Y", "y") and column.unit in PURE and not {"beta", "v", "r"} & names
     twice = (
         name in ("X", "Z") or place or (name in own - {"lift", "drag"} and one.whole and "coefficient" not in one.text)
     )
     if {"lift", "drag"} <= own and name in FORCES and twice and not column.means:
-        return Proposal("ignore", BESIDE_WIND, note=BESIDE_WIND)
+        return Proposal("ignore", GIVEN_AS_COEFFICIENTS, note=GIVEN_AS_COEFFICIENTS)
     of_body = {"ca", "ct", "cn"} & pure if "cn" in pure else set()
     if len(of_body) > 1 and bare in of_body and {"cl", "cd"} <= pure:
-        return Proposal("ignore", BESIDE_WIND, note=BESIDE_WIND)
+        return Proposal("ignore", GIVEN_AS_COEFFICIENTS, note=GIVEN_AS_COEFFICIENTS)
     if bare == "cn" and column.unit in PURE and "alpha" in names and not SIDEWAYS & names and not {"cll", "ca"} & pure:
         return Proposal("", "N or -Z by its name: no column is of a motion sideways, so it may be the normal force")
     if bare == "ct" and {"cn", "ct"} == of_body and "alpha" in names:
         return Proposal("", "X or -X by its name beside Cn: positive forward or aft")
     if {"ca", "cn"} <= pure and bare in ("ca", "cn"):
         axial = bare == "ca"
-        body, beside, way = ("X", "CN", "aft") if axial else ("Z", "CA", "up")
+        body, companion, way = ("X", "CN", "aft") if axial else ("Z", "CA", "up")
         along = 0.0 if frame is None else float(frame.rotation[0, 0] if axial else frame.rotation[2, 2])
         if not along:
-            return Proposal("", f"its name beside {beside}: positive {way}, whatever the axes")
+            return Proposal("", f"its name beside {companion}: positive {way}, whatever the axes")
         # x forward and z down are +1: an axial force is positive aft, a normal force positive up.
         plain = proposed(replace(column, name=f"C{body.casefold()}"), stated)
         return replace(
-            plain, text=f"{'-' * (along > 0.0)}{plain.text}", why=f"its name beside {beside}: positive {way}"
+            plain, text=f"{'-' * (along > 0.0)}{plain.text}", why=f"its name beside {companion}: positive {way}"
         )
     return one
 
@@ -275,8 +275,8 @@ def _is_of_a_force(name: str, names: Set[str]) -> bool:
     own = re.split(r"(?<=[a-z0-9])(?=[A-Z_ ])|[_ ]", name.strip())[0]
     forces = {base: named_as(base) for base in names if base != name.strip()}
     bases = {base for base, force in forces.items() if force in FORCES}
-    beside = any(base.startswith(f"{own}_") and forces[base] == named_as(own) for base in bases)
-    return beside or not bases.isdisjoint({own, own[:-1]})
+    companion = any(base.startswith(f"{own}_") and forces[base] == named_as(own) for base in bases)
+    return companion or not bases.isdisjoint({own, own[:-1]})
 
 
 def _like_a_setting(values: Array, settings: Sequence[Array]) -> bool:
@@ -302,12 +302,12 @@ def _together(one: Array, other: Array) -> float:
     return float(abs(np.corrcoef(one[both], other[both])[0, 1]))
 
 
-def by_said_area(one: Proposal, known: Mapping[str, object]) -> Proposal:
+def by_stated_area(one: Proposal, known: Mapping[str, object]) -> Proposal:
     """A prime as a coefficient of the area that a person, or words that were accepted, say it was divided by."""
     area = known.get(AREA)
     if area is None or area == "prime":
         return one
-    given = one.said
+    given = one.meaning
     if given is None or given.name not in FORCES or not given.primed:
         return one
     length = known.get(LENGTH_OF)
@@ -319,7 +319,7 @@ def by_said_area(one: Proposal, known: Mapping[str, object]) -> Proposal:
     return replace(one, text=text, why=f"{one.why}, by 1/2 rho U^2 A{' L' * moment}, as said")
 
 
-def _beside_the_body(one: Proposal, other: str, body: str) -> Proposal:
+def _or_body_force(one: Proposal, other: str, body: str) -> Proposal:
     """A drag with the other reading that a force of the body beside it makes as likely: X differs by Y sin(beta)."""
     if not re.match(r"drag\b", one.text) or one.certain or one.note:
         return one

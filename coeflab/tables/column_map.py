@@ -186,14 +186,14 @@ def counted_in(name: str, unit: str = "") -> tuple[str, str]:
     return bare, "?" if counted else ""
 
 
-def unturned(name: str, said: ColumnMap) -> str:
+def unturned(name: str, meaning: ColumnMap) -> str:
     """A warning where a column whose name is that of lift or drag is called a force along a body axis; else empty."""
     wind = vocabulary().of_flow(name)
-    if not wind or said.error or said.name not in ("X", "Y", "Z"):
+    if not wind or meaning.error or meaning.name not in ("X", "Y", "Z"):
         return ""
-    exact = str(replace(said, name=wind, negative=False))
+    exact = str(replace(meaning, name=wind, negative=False))
     return (
-        f"warning: {shown(name)} is read as {said}, a force along the body, but its name is that of {wind}, {ACROSS[wind]} "
+        f"warning: {shown(name)} is read as {meaning}, a force along the body, but its name is that of {wind}, {ACROSS[wind]} "
         f"the flow: slopes would lack C_D0, often a tenth and more. If it is {wind}, call it {exact}"
     )
 
@@ -224,54 +224,56 @@ def read_column_map(text: Any) -> ColumnMap:
     return _checked(out, text)
 
 
-def _checked(said: ColumnMap, text: str) -> ColumnMap:
+def _checked(meaning: ColumnMap, text: str) -> ColumnMap:
     """The entry with its unit understood."""
-    if said.role == "word":
-        if said.unit or said.negative or said.primed:
-            raise input_error("tables.word_with_sign", text=shown(text), name=said.name)
-        return said
-    if said.error and (said.name not in FORCES or said.negative):
+    if meaning.role == "word":
+        if meaning.unit or meaning.negative or meaning.primed:
+            raise input_error("tables.word_with_sign", text=shown(text), name=meaning.name)
+        return meaning
+    if meaning.error and (meaning.name not in FORCES or meaning.negative):
         raise input_error("tables.no_standard_error", text=shown(text), forces=" ".join(FORCES))
-    if said.primed:
-        if said.name not in (*FORCES, *LINEAR, *ANGULAR):
+    if meaning.primed:
+        if meaning.name not in (*FORCES, *LINEAR, *ANGULAR):
             raise InputError(shown(text), f"a prime of {' '.join((*COMPONENTS, *LINEAR, *ANGULAR, *WIND))} only")
-        if said.unit not in ("", "-") and share(said.unit) is None:
-            raise input_error("tables.no_share", kind=UnitsError, unit=said.unit, name=said.name)
-        return replace(said, unit=said.unit or "-")
-    if said.unit.startswith("coefficient"):
-        return _coefficient(said, text)
-    if said.dimension == "none" and said.unit in ("", "-", "1"):
-        return replace(said, unit="-")
-    if said.unit == "-":
-        advice = f"For the prime by the campaign's length write {said.name}' [-]"
-        if said.name in FORCES:
-            advice += f"; for a coefficient by an area {said.plain} [{PER[said.dimension]}]"
-        raise UnitsError("[-]", f"a unit of {said.dimension}, such as {EXAMPLES[said.dimension]}", advice=advice + ".")
-    if said.name == "U" and (m := _SHIP.fullmatch(said.unit)):
+        if meaning.unit not in ("", "-") and share(meaning.unit) is None:
+            raise input_error("tables.no_share", kind=UnitsError, unit=meaning.unit, name=meaning.name)
+        return replace(meaning, unit=meaning.unit or "-")
+    if meaning.unit.startswith("coefficient"):
+        return _coefficient(meaning, text)
+    if meaning.dimension == "none" and meaning.unit in ("", "-", "1"):
+        return replace(meaning, unit="-")
+    if meaning.unit == "-":
+        advice = f"For the prime by the campaign's length write {meaning.name}' [-]"
+        if meaning.name in FORCES:
+            advice += f"; for a coefficient by an area {meaning.plain} [{PER[meaning.dimension]}]"
+        raise UnitsError(
+            "[-]", f"a unit of {meaning.dimension}, such as {EXAMPLES[meaning.dimension]}", advice=advice + "."
+        )
+    if meaning.name == "U" and (m := _SHIP.fullmatch(meaning.unit)):
         factor(m["unit"], "speed")
-        return replace(said, unit=m["unit"], ship=float(m["scale"]))
-    if said.name in FORCES and (m := _PER_SPEED.fullmatch(said.unit)):
-        factor(m["unit"], said.dimension)
-        return replace(said, unit=m["unit"], per_speed=True)
-    if said.unit:
-        factor(said.unit, said.dimension)
-    return said
+        return replace(meaning, unit=m["unit"], ship=float(m["scale"]))
+    if meaning.name in FORCES and (m := _PER_SPEED.fullmatch(meaning.unit)):
+        factor(m["unit"], meaning.dimension)
+        return replace(meaning, unit=m["unit"], per_speed=True)
+    if meaning.unit:
+        factor(meaning.unit, meaning.dimension)
+    return meaning
 
 
-def _coefficient(said: ColumnMap, text: str) -> ColumnMap:
-    match = _COEFFICIENT.fullmatch(said.unit)
-    moment = said.dimension == "moment"
-    if said.unit == OPEN_SIZES and said.name in FORCES:
-        return said
-    if match is None or not match["area"] or said.name not in FORCES or moment != bool(match["length"]):
-        expected = f"{said.plain} [{PER['moment' if moment else 'force']}]"
+def _coefficient(meaning: ColumnMap, text: str) -> ColumnMap:
+    match = _COEFFICIENT.fullmatch(meaning.unit)
+    moment = meaning.dimension == "moment"
+    if meaning.unit == OPEN_SIZES and meaning.name in FORCES:
+        return meaning
+    if match is None or not match["area"] or meaning.name not in FORCES or moment != bool(match["length"]):
+        expected = f"{meaning.plain} [{PER['moment' if moment else 'force']}]"
         raise input_error(
-            "tables.no_coefficient", text=shown(text), wanted=expected if said.name in FORCES else f"a coefficient of {' '.join(FORCES)} only",
+            "tables.no_coefficient", text=shown(text), wanted=expected if meaning.name in FORCES else f"a coefficient of {' '.join(FORCES)} only",
         )  # fmt: skip
     area, length = _size("A", match["area"], "area"), _size("L", match["length"], "length") if moment else 0.0
     if area <= 0.0 or (moment and length <= 0.0):
         raise input_error("tables.no_sizes", text=shown(text))
-    return replace(said, unit="-", area=area, length=length)
+    return replace(meaning, unit="-", area=area, length=length)
 
 
 def _size(name: str, typed: str, dimension: str) -> float:

@@ -33,7 +33,7 @@ _NO_NUMBER = ERRORS | {
     "nan", "+nan", "-nan", "nan(ind)", "-nan(ind)", "1.#qnan", "-1.#ind", "1.#ind", "na", "n.a.", "n/a", "null", "none", "nil",
     "inf", "+inf", "-inf", "infinity", "+infinity", "-infinity", "1.#inf", "-1.#inf",
 }  # fmt: skip
-SAID = {".": "point", ",": "comma", " ": "blank", "'": "apostrophe", "": "none"}
+MARK_NAMES = {".": "point", ",": "comma", " ": "blank", "'": "apostrophe", "": "none"}
 
 
 @dataclass(frozen=True)
@@ -66,7 +66,7 @@ class Marks:
         return re.compile(rf"[-+]?(?:[0-9]+(?:{point}[0-9]*)?|{point}[0-9]+)(?:[eEdD][-+]?[0-9]+)?{grouped}")
 
     @cached_property
-    def _kept(self) -> dict[int, str | None]:
+    def _translation(self) -> dict[int, str | None]:
         """Letters of a number as Python reads it: no marks between thousands, a point, e."""
         away = f"{self.thousands}{BLANKS} '’" if self.thousands else ""
         return {**dict.fromkeys(map(ord, away)), ord(self.decimal): ".", ord("d"): "e", ord("D"): "e"}
@@ -75,7 +75,7 @@ class Marks:
         """Many cells at once, equal to `number` of each; None where one of them is anything but a finite number."""
         if not all(map(self._form.fullmatch, cells)):
             return None
-        values = np.array(list(map(float, "\n".join(cells).translate(self._kept).split("\n"))))
+        values = np.array(list(map(float, "\n".join(cells).translate(self._translation).split("\n"))))
         return values if np.isfinite(values).all() else None
 
     def number(self, cell: str) -> float | None:
@@ -83,7 +83,7 @@ class Marks:
         if not cell.isascii():
             cell = cell.translate(_MINUS)
         if self._form.fullmatch(cell):
-            value = float(cell.translate(self._kept))
+            value = float(cell.translate(self._translation))
             return value if math.isfinite(value) else math.nan
         return math.nan if cell.lower() in _NO_NUMBER or cell in _DASHES or cell.startswith("Err:") else None
 

@@ -52,11 +52,11 @@ class Evidence:
     instead: str = ""
 
 
-def turn_of(said: ColumnMap, frame: Axes) -> str:
+def turn_of(meaning: ColumnMap, frame: Axes) -> str:
     """What a positive number in a column of a rate does to the body, such as turns the bow to port."""
-    axis = frame.rotation[:, ANGULAR.index(said.name)]
+    axis = frame.rotation[:, ANGULAR.index(meaning.name)]
     i = int(np.argmax(np.abs(axis)))
-    return TURNS[ANGULAR[i], (float(axis[i]) > 0.0) != said.negative]
+    return TURNS[ANGULAR[i], (float(axis[i]) > 0.0) != meaning.negative]
 
 
 def _about_another_axis(data: Mapping[str, Array], frame: Axes) -> Iterator[Evidence]:
@@ -137,9 +137,9 @@ def evidence(columns: Sequence[Assigned], frame: Axes | None = None) -> tuple[Ev
     frame : Axes, optional
         Of the file, once it is known; without it the sign of an angle stays open.
     """
-    data = {one.said.name: one.values for one in columns if one.said.role not in ("word", "error")}
-    out = [Evidence(why) for one in columns if (why := unturned(one.column.name, one.said))]
-    angles = [one.said.name for one in columns if one.said.role == "angle"]
+    data = {one.meaning.name: one.values for one in columns if one.meaning.role not in ("word", "error")}
+    out = [Evidence(why) for one in columns if (why := unturned(one.column.name, one.meaning))]
+    angles = [one.meaning.name for one in columns if one.meaning.role == "angle"]
     for angle, component, flow, side, other in (
         ("beta", "Y", "v", "starboard", "port"), ("alpha", "Z", "w", "down", "up"),
     ):  # fmt: skip
@@ -178,7 +178,7 @@ def evidence(columns: Sequence[Assigned], frame: Axes | None = None) -> tuple[Ev
         turn = f"r > 0 turns to {'starboard' if up > 0 else 'port'}: it {TURN.partition(':')[0]}"
         out += [Evidence(turn if up else f"r {TURN}")]
     out += _moment_of_the_other_plane(data, frame) if frame else []
-    out += _levers(data, {one.said.name: one.said for one in columns}, frame)
+    out += _levers(data, {one.meaning.name: one.meaning for one in columns}, frame)
     if "drag" in data and np.any(ok := np.isfinite(data["drag"])) and np.all(data["drag"][ok] < 0.0):
         out.append(Evidence("warning: drag is below zero in every row: that is thrust, or -drag is meant"))
     x = _frd(data, "X", frame) if frame else data.get("X")
@@ -209,14 +209,14 @@ def across_planes(
     """
     axes = frame or parse_axes("FRD")
     alike = {
-        (c.said.pure, c.said.area, c.said.length if c.said.name in MOMENTS else None)
+        (c.meaning.pure, c.meaning.area, c.meaning.length if c.meaning.name in MOMENTS else None)
         for c in columns
-        if c.said.role == "force"
+        if c.meaning.role == "force"
     }
     if len({(pure, area) for pure, area, _ in alike}) != 1:
         return
-    data = {c.said.name: c.values for c in columns if c.said.role not in ("word", "error")}
-    errors = {c.said.name: c.values for c in columns if c.said.role == "error"}
+    data = {c.meaning.name: c.values for c in columns if c.meaning.role not in ("word", "error")}
+    errors = {c.meaning.name: c.values for c in columns if c.meaning.role == "error"}
     if "side" in data and _frd(data, "Y", axes) is None:
         data[_named("Y", axes)] = data["side"]
     if "lift" in data and _frd(data, "Z", axes) is None:
@@ -240,7 +240,7 @@ def across_planes(
 
 
 def _primed(columns: Sequence[Assigned]) -> set[str]:
-    return {c.said.name for c in columns if c.said.primed}
+    return {c.meaning.name for c in columns if c.meaning.primed}
 
 
 def _frd(data: Mapping[str, Array], component: str, frame: Axes) -> Array | None:
@@ -251,23 +251,23 @@ def _frd(data: Mapping[str, Array], component: str, frame: Axes) -> Array | None
 def frd_column(columns: Sequence[Assigned], component: str, frame: Axes) -> Assigned | None:
     """The column that holds a force or velocity of the body, whatever its sign there; no standard error."""
     own = _named(component, frame)
-    return next((c for c in columns if c.said.name == own and not c.said.error), None)
+    return next((c for c in columns if c.meaning.name == own and not c.meaning.error), None)
 
 
 def astern(columns: Sequence[Assigned], frame: Axes) -> Assigned | None:
     """The column along the body's length if in FRD u is below zero in every row."""
-    data = {one.said.name: one.values for one in columns if one.said.role == "velocity"}
+    data = {one.meaning.name: one.values for one in columns if one.meaning.role == "velocity"}
     u = _frd(data, "u", frame)
     u = np.empty(0) if u is None else u[np.isfinite(u)]
     if not u.size or not np.all(u < 0.0):
         return None
     own = _named("u", frame)
-    return next(one for one in columns if one.said.role == "velocity" and one.said.name == own)
+    return next(one for one in columns if one.meaning.role == "velocity" and one.meaning.name == own)
 
 
 def along_x(columns: Sequence[Assigned]) -> tuple[int, str]:
     """Where x points, 1 forward and -1 aft, 0 where nothing shows it; and what shows it, in a few words."""
-    data = {one.said.name: one.values for one in columns if one.said.role in ("force", "velocity")}
+    data = {one.meaning.name: one.values for one in columns if one.meaning.role in ("force", "velocity")}
     for name, forward, meaning in (("u", 1, "motion ahead"), ("X", -1, "drag")):
         known = data[name][np.isfinite(data[name])] if name in data else np.empty(0)
         if known.size and (np.all(known > 0.0) or np.all(known < 0.0)):
@@ -286,7 +286,7 @@ def centre_of(columns: Sequence[Assigned], frame: Axes | None) -> tuple[str, str
     frame : Axes, optional
         Of the file.
     """
-    data = {one.said.name: one.values for one in columns if one.said.role != "word" and not one.said.error}
+    data = {one.meaning.name: one.values for one in columns if one.meaning.role != "word" and not one.meaning.error}
     if "N" not in data or "R" not in data:
         return "", "", ""
     n, straight = data["N"] * np.sign(data["R"]), np.isfinite(data["N"]) & np.isfinite(data["R"])
@@ -308,7 +308,7 @@ def centre_of(columns: Sequence[Assigned], frame: Axes | None) -> tuple[str, str
     return f"{sign}{words[below == (down > 0.0)]}", why, ""
 
 
-def _levers(data: Mapping[str, Array], said: Mapping[str, ColumnMap], frame: Axes | None) -> list[Evidence]:
+def _levers(data: Mapping[str, Array], meaning: Mapping[str, ColumnMap], frame: Axes | None) -> list[Evidence]:
     """Where along x the forces act, which M of a left-handed triad contradicts; in FRD once the axes are known."""
     found = {}
     for moment, force, sign in (("N", "Y", 1.0), ("M", "Z", -1.0)):
@@ -328,8 +328,8 @@ def _levers(data: Mapping[str, Array], said: Mapping[str, ColumnMap], frame: Axe
                 Evidence(f"{moment} / {force}: the force acts toward {'+' if arm > 0 else '-'}x of the reference point")
             )
             continue
-        kinds = {said[c].pure for c in (moment, force) if c in said}
-        coefficient = any(said[c].area for c in (moment, force) if c in said)
+        kinds = {meaning[c].pure for c in (moment, force) if c in meaning}
+        coefficient = any(meaning[c].area for c in (moment, force) if c in meaning)
         place = (
             "" if coefficient or len(kinds) != 1 else f" (x = {arm:.2g} {'of the length' if kinds == {True} else 'm'})"
         )

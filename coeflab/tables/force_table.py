@@ -278,17 +278,17 @@ class ForceTable:
         shared = [np.unique(setting[some & (level == k)]).size for k in range(int(level.max(initial=0)) + 1)]
         common = level == len(shared) - 1 - int(np.argmax(shared[::-1]))
         rank = np.where(counted, self.cells, 0.0) + common * 2.0 * np.max(self.cells[counted], initial=1.0)
-        usable, left, kept = {}, {}, np.zeros(len(self))
+        usable, left, selected = {}, {}, np.zeros(len(self))
         for c, mask in self.usable.items():
             best = np.zeros(len(self))
             np.maximum.at(best, setting[mask & counted], rank[mask & counted])
             left[c] = mask & counted & (rank < best[setting])
             usable[c] = mask & ~left[c]
             in_use = usable[c] & counted
-            np.maximum.at(kept, setting[in_use], self.cells[in_use])
+            np.maximum.at(selected, setting[in_use], self.cells[in_use])
         used = np.logical_or.reduce([*usable.values(), nothing])
         found = [
-            Exclusion(int(row), self.lines[row] if self.lines else 0, c, FINER if self.cells[row] > kept[setting[row]] else COARSER)
+            Exclusion(int(row), self.lines[row] if self.lines else 0, c, FINER if self.cells[row] > selected[setting[row]] else COARSER)
             for row in np.flatnonzero(np.logical_or.reduce([*left.values(), nothing]))
             for c in ([c for c in left if left[c][row]] if used[row] else [""])
         ]  # fmt: skip

@@ -33,8 +33,8 @@ from coeflab.tables.settings import (
 MANY = 20  # columns, beyond which those that no fit uses have no line
 AGAINST = "! but "  # before a line of the file that a setting contradicts
 KEY, VALUE = 25, 22  # letters
-SAID = (HALF_MODEL, SYMMETRY)  # of the keys of the campaign: what decides numbers
-GRAVE = ("axes.", "table.", "inertia.", "coefficients.", *SAID)
+DECISIVE = (HALF_MODEL, SYMMETRY)  # of the keys of the campaign: what decides numbers
+GRAVE = ("axes.", "table.", "inertia.", "coefficients.", *DECISIVE)
 UNSHOWN = ("campaign.", "source.how_obtained", "table.source", "table.labels", "table.cells")
 
 
@@ -101,7 +101,7 @@ def quoted(text: str) -> str:
 
 def is_shown(key: str) -> bool:
     """Whether the form has a line for a setting."""
-    return key in SAID or not key.startswith(UNSHOWN)
+    return key in DECISIVE or not key.startswith(UNSHOWN)
 
 
 def question_line(q: Question) -> Line:
@@ -182,7 +182,7 @@ def _covered(offer: Proposal) -> str:
 
 
 def _doubtful(doubt: Doubt) -> Line:
-    turned, selected = (str(replace(doubt.said, negative=negative)) for negative in (True, False))
+    turned, selected = (str(replace(doubt.meaning, negative=negative)) for negative in (True, False))
     name = doubt.column.name
     turns = f"; {name} > 0 then {doubt.turns}" * bool(doubt.turns)
     about = f'Column "{name}": {doubt.why}. {turned} turns its sign, {selected} keeps it{turns}.'
@@ -355,9 +355,9 @@ def _take(out: Typed, part: str, lines: Sequence[Line], columns: Places, options
         out.settings |= {k: Setting(value, "confirmed") for k, value in read.items()}
 
 
-def _column(raw: RawTable, column: RawColumn, said: str) -> ColumnMap:
+def _column(raw: RawTable, column: RawColumn, meaning: str) -> ColumnMap:
     try:
-        out = read_column_map(said)
+        out = read_column_map(meaning)
         if out.name != "ignore":
             with_unit(raw, column, out)
     except InputError as why:

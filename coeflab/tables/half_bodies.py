@@ -73,7 +73,7 @@ def forces_across(
     force = _largest(along, [c for c in along.forces if c in FORCES])
     moment = max(_largest(along, [c for c in along.forces if c not in FORCES]), LEVER * along.length * force)
     found: dict[str, float] = {}
-    for c in (c for c in cut.lost if c in along.forces and (c in FORCES or in_plane)):
+    for c in (c for c in cut.cancelled if c in along.forces and (c in FORCES or in_plane)):
         share = _size(along, c, declared) / max(force if c in FORCES else moment, 1e-300)
         if share > (FORCE if c in FORCES else MOMENT):
             found[c] = share
@@ -85,7 +85,7 @@ def forces_across(
         advice="half_model = " + " or ".join(f'"{half}"' for half, symmetry in HALVES.items() if symmetry == cut.symmetry),
         components=tuple(found), shares=tuple(f"{c} is {share:.0%}" for c, share in found.items()), kind=kind, plane=cut.plane,
         rows=int(max(np.count_nonzero(along.rows[c]) for c in found)), symmetry=cut.symmetry, declared="yes" if declared else "no",
-        doubled=cut.doubled, lost=cut.lost,
+        doubled=cut.doubled, lost=cut.cancelled,
     )  # fmt: skip
 
 
@@ -129,7 +129,7 @@ def stated_plane(places: Sequence[str]) -> dict[str, Stated]:
     return {HALF_MODEL: Stated("symmetry plane", where, offered=True, contradicted="; ".join(places))}
 
 
-def planes_beside(
+def planes_in_files(
     path: Path, suffixes: Sequence[str], kind: re.Pattern[str], name: re.Pattern[str] | None = None
 ) -> tuple[dict[str, Stated], list[Path]]:
     """What texts beside a monitor state of the half model by a symmetry plane that they name; and the files that name one.

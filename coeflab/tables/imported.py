@@ -128,7 +128,7 @@ def contents(tables: Sequence[Filled], settings: Settings, source: Path) -> dict
         words = {"source_sha256": f"of {t.raw.path.name}, from which {t.file} was made"}
         if labels:
             own["labels"] = labels
-        if any(c.said.name == "cells" for c in t.columns):
+        if any(c.meaning.name == "cells" for c in t.columns):
             own["cells"] = "cells"
         keys = own_keys(t, common[POINT_OF].value, len(tables) == 1, len(set(map(str, halves))) > 1, _held(t))
         own |= {name: content for name, (content, _) in keys.items()}
@@ -178,9 +178,9 @@ def own_keys(
         out["assumed"] = flagged, "accepted, not stated by the source; what hangs on it says so"
     if constant:
         out["constant"] = constant, "one number throughout, while the speed varied"
-    made_with = t.raw.stated.get("conditions.density")
-    if made_with is not None and not made_with.offered and isinstance(made_with.value, float):
-        out["forces_density"] = made_with.value, f"stated: {made_with.place}"
+    model_density = t.raw.stated.get("conditions.density")
+    if model_density is not None and not model_density.offered and isinstance(model_density.value, float):
+        out["forces_density"] = model_density.value, f"stated: {model_density.place}"
     if half and HALF_MODEL in t.settings:
         out["half_model"] = (which := t.settings[HALF_MODEL]).value, which.origin + _of_half(which.value)
     if t.settings[POINT_OF].value != point:
@@ -193,8 +193,8 @@ def _of_half(half: bool | str) -> str:
     cut = cut_of(half)
     if cut is None:
         return ": forces are of the whole body"
-    doubled, lost = ", ".join(cut.doubled), ", ".join(cut.lost)
-    return f": cut at {cut.plane}, {doubled} are doubled; {lost} left out"
+    doubled, cancelled = ", ".join(cut.doubled), ", ".join(cut.cancelled)
+    return f": cut at {cut.plane}, {doubled} are doubled; {cancelled} left out"
 
 
 def _require_one(tables: Sequence[Filled], common: Settings) -> None:
@@ -218,8 +218,8 @@ def _how_obtained(table: Filled) -> str:
 
 def _constants(table: Filled, common: Settings) -> dict[str, float]:
     """Heads and values of columns for what one table has of its own where a campaign has one: speed and density."""
-    roles = {c.said.role for c in table.columns}
-    primed = all(c.said.primed for c in table.columns if c.said.role == "velocity")
+    roles = {c.meaning.role for c in table.columns}
+    primed = all(c.meaning.primed for c in table.columns if c.meaning.role == "velocity")
     out = {}
     for key, role, head in (
         ("conditions.speed", "speed", "U [m/s]"),
@@ -233,10 +233,10 @@ def _constants(table: Filled, common: Settings) -> dict[str, float]:
 
 def _held(table: Filled) -> dict[str, float]:
     """Columns of no use with one number throughout, of a table of several speeds: what the test held while the speed varied."""
-    speeds = next((c.values for c in table.columns if c.said.role == "speed"), np.empty(0))
+    speeds = next((c.values for c in table.columns if c.meaning.role == "speed"), np.empty(0))
     if np.unique(levels_of(speeds[np.isfinite(speeds)])).size < 2:
         return {}
-    used = {c.column.name for c in table.columns if c.said.role != "propeller"}
+    used = {c.column.name for c in table.columns if c.meaning.role != "propeller"}
     idle = [
         c
         for c in table.raw.columns
@@ -320,17 +320,17 @@ def _table(
     rows = usable_rows(raw, columns)
     length = quantity(settings["scaling.length"].value, "length")
     speed = next(
-        (c.values for c in columns if c.said.role == "speed"), quantity(settings["conditions.speed"].value, "speed")
+        (c.values for c in columns if c.meaning.role == "speed"), quantity(settings["conditions.speed"].value, "speed")
     )
     heads: list[str] = []
     cells: list[list[str]] = []
     labels: list[str] = []
     doubts = [set(words) for words in doubtful(raw, columns)]
-    if not any(c.said.name == "point" for c in columns):
+    if not any(c.meaning.name == "point" for c in columns):
         heads.append("point")
         cells.append([row_name(raw, int(row)) for row in rows])
     for one in columns:
-        given = one.said
+        given = one.meaning
         if given.name == "uncertain":
             continue
         if given.name in ("label", "point"):
@@ -359,7 +359,7 @@ def _table(
         cells.append([repr(number)] * len(rows))
     if any(doubts[row] for row in rows):
         heads.append("uncertain")
-        names = [LONG.get(one.said.name, one.said.name) for one in columns if not one.said.error]
+        names = [LONG.get(one.meaning.name, one.meaning.name) for one in columns if not one.meaning.error]
         words = [{LONG.get(name, name) for name in doubts[row]} for row in rows]
         cells.append([" ".join(name for name in names if name in own) for own in words])
     comments = [f"Made by `coeflab import` from {one_line(raw.path.name)}; all digits of the file."]
@@ -369,11 +369,11 @@ def _table(
     return csv_text([heads, *zip(*cells, strict=True)], comments).encode(), labels
 
 
-def _head(said: ColumnMap) -> str:
-    if said.name == "cells":
+def _head(meaning: ColumnMap) -> str:
+    if meaning.name == "cells":
         return "cells"
-    name = f"se_{said.name}" if said.error else LONG.get(said.name, said.name)
-    return f"{name}' [-]" if said.pure else f"{name} [{said.unit}]"
+    name = f"se_{meaning.name}" if meaning.error else LONG.get(meaning.name, meaning.name)
+    return f"{name}' [-]" if meaning.pure else f"{name} [{meaning.unit}]"
 
 
 def _label(name: str, taken: Sequence[str]) -> str:
@@ -384,12 +384,12 @@ def _label(name: str, taken: Sequence[str]) -> str:
     return out
 
 
-def checked(made: Mapping[str, bytes], tables: Sequence[Filled]) -> tuple[ForceTable, ...]:
+def checked(files: Mapping[str, bytes], tables: Sequence[Filled]) -> tuple[ForceTable, ...]:
     """The tables as the new campaign reads, tried in a temporary folder; complaints are about the file that was imported.
 
     Parameters
     ----------
-    made : mapping of str to bytes
+    files : mapping of str to bytes
         From `contents`.
     tables : sequence of Filled
 
@@ -400,7 +400,7 @@ def checked(made: Mapping[str, bytes], tables: Sequence[Filled]) -> tuple[ForceT
     """
     with TemporaryDirectory(prefix="coeflab_") as folder:
         path = Path(folder) / FILE
-        for file, content in made.items():
+        for file, content in files.items():
             (Path(folder) / file).write_bytes(content)
         try:
             campaign = read_campaign(path)

@@ -37,7 +37,7 @@ from coeflab.tables.mapping import (
     known_as,
     with_unit,
 )
-from coeflab.tables.proposals import AREA, Proposal, coefficient_as_said, lacks_sizes, taken_as
+from coeflab.tables.proposals import AREA, Proposal, coefficient_by_sizes, lacks_sizes, taken_as
 from coeflab.tables.questions import Question, known_sizes, questions
 from coeflab.tables.raw_table import HALF_MODEL, RawColumn, RawTable
 from coeflab.tables.settings import EXTRA, OF_ARMS, SYMMETRY, VISCOSITY, Setting, Settings, frame_of, read_setting
@@ -48,7 +48,7 @@ from coeflab.tables.words.axes import BODY_AXES, TURN_OF_R
 
 ALLOWED_FORCES = frozenset("XYZKMN")  # how the text that says what a unit allows begins
 MOST_IDLE = 5  # columns that a warning names
-LOST = "of half of the body"  # why a column of it is left out
+HALF_ONLY = "of half of the body"  # why a column of it is left out
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,7 +58,7 @@ class Doubt:
     Attributes
     ----------
     column : RawColumn
-    said : ColumnMap
+    meanings : ColumnMap
         What it is by now, or, where its axis is contradicted, the rate about the other axis.
     why : str
     turns : str
@@ -68,7 +68,7 @@ class Doubt:
     """
 
     column: RawColumn
-    said: ColumnMap
+    meanings: ColumnMap
     why: str
     turns: str = ""
     another: bool = False
@@ -114,7 +114,7 @@ class Interpretation:
 
 
 def interpreted(
-    raw: RawTable, said: Mapping[str, ColumnMap], settings: Settings, accept: bool = False,
+    raw: RawTable, meanings: Mapping[str, ColumnMap], settings: Settings, accept: bool = False,
     judged: Collection[str] | None = None,
 ) -> Interpretation:  # fmt: skip
     """What of a file is settled, what is open, and what its numbers show.
@@ -122,7 +122,7 @@ def interpreted(
     Parameters
     ----------
     raw : RawTable
-    said : mapping of str to ColumnMap
+    meanings : mapping of str to ColumnMap
         What a person said of columns, by their names in the file.
     settings : mapping of str to Setting
     accept : bool
@@ -132,12 +132,12 @@ def interpreted(
     """
     in_frame = frame_of(_with_frame(raw, settings))
     cut = _cut_of(settings)
-    offers = _offers(raw, said, settings, in_frame, cut)
+    offers = _offers(raw, meanings, settings, in_frame, cut)
     mapping: dict[str, ColumnMap] = {}
     still: list[tuple[RawColumn, Proposal]] = []
     accepted: set[str] = set()
     for column, offer in zip(raw.columns, offers, strict=True):
-        one = _said_of(column, said)
+        one = _meaning_of(column, meanings)
         if one is not None and lacks_sizes(column, one):
             one = read_column_map(offer.text) if offer.whole else None
         if one is None and offer.whole and (offer.certain or accept):
@@ -148,25 +148,27 @@ def interpreted(
         else:
             mapping[column.name] = one
     tentative = {c.name: _likely_map(c, o) for c, o in still}
-    said_of = mapping | tentative
-    columns, complaints = _columns(raw, said_of, any(not offer.whole for _, offer in still))
+    known_meanings = mapping | tentative
+    columns, complaints = _columns(raw, known_meanings, any(not offer.whole for _, offer in still))
     record = tuple(record_over_time(raw))
-    if not said and not record and (bare := _no_table(raw, offers)):
+    if not meanings and not record and (bare := _no_table(raw, offers)):
         complaints = (bare,)
     likely = _with_frame(raw, settings)
     frame = frame_of(likely)
-    warned = {unturned(c.column.name, c.said) for c in columns} if BODY_AXES in raw.stated else set()
+    warned = {unturned(c.column.name, c.meaning) for c in columns} if BODY_AXES in raw.stated else set()
     shows = tuple(_against(e, settings) for e in evidence(columns, frame) if e.text not in warned)
     if not any(e.instead for e in shows):  # a doubtful axis comes first
         shows += tuple(_across(columns, frame, settings))
-    names = [o.said.name for _, o in still if o.said and not o.whole]
+    names = [o.meaning.name for _, o in still if o.meaning and not o.whole]
     shows += tuple(
-        Evidence(f"warning: {key} = {said}, but {place}") for key, said, place in against_words(raw, settings)
+        Evidence(f"warning: {key} = {meanings}, but {place}") for key, meanings, place in against_words(raw, settings)
     )
-    lost = [c.name for c, o in zip(raw.columns, offers, strict=True) if o.why.startswith(LOST) and "se_" not in c.name]
+    halved = [
+        c.name for c, o in zip(raw.columns, offers, strict=True) if o.why.startswith(HALF_ONLY) and "se_" not in c.name
+    ]
     if cut is not None:
         shows += (Evidence(
-            f"half of the body, cut at {cut.plane}: {', '.join(cut.doubled)} are doubled" + f"; {', '.join(lost)} left out" * bool(lost)
+            f"half of the body, cut at {cut.plane}: {', '.join(cut.doubled)} are doubled" + f"; {', '.join(halved)} left out" * bool(halved)
         ),)  # fmt: skip
     shows += tuple(Evidence(f"warning: {unread}") for one in columns if (unread := taken_as(one)))
     shows += (
@@ -175,17 +177,17 @@ def interpreted(
     )
     if all(offer.whole or offer.role not in SETTINGS for _, offer in still):
         shows += tuple(_at_rest(raw, columns))
-    primes = _primes_by_name(raw, columns, said, [c.name for c, o in still if not o.whole])
+    primes = _primes_by_name(raw, columns, meanings, [c.name for c, o in still if not o.whole])
     asked = questions(raw, columns, likely, shows, names, [o for _, o in still], primes or AREA in settings)
     if frame and (back := astern(columns, frame)):
         complaints += (_astern(raw, back, frame),)
     complaints += (
         *record, *_another_water(raw, columns, settings), *_two_ways(raw, columns), *overruled(raw, settings),
     )  # fmt: skip
-    settled = set(said if judged is None else judged)
+    settled = set(meanings if judged is None else judged)
     doubts = [
         _doubt(one, e, frame) for e in shows for one in columns
-        if e.against and one.said.name == e.against and not one.said.error
+        if e.against and one.meaning.name == e.against and not one.meaning.error
         and (e.instead or not settled & {one.column.name, *known_as(one.column)})
     ]  # fmt: skip
     yet = tuple(q for q in asked if q.key not in settings)
@@ -199,22 +201,22 @@ def interpreted(
 
 
 def _columns(
-    raw: RawTable, said_of: Mapping[str, ColumnMap], unfinished: bool
+    raw: RawTable, known_meanings: Mapping[str, ColumnMap], unfinished: bool
 ) -> tuple[tuple[Assigned, ...], tuple[InputError, ...]]:
     """The columns, or those that are possible with what is wrong; that no force is said yet is not, while some are open."""
     try:
-        return assigned(raw, said_of, whole=False), ()
+        return assigned(raw, known_meanings, whole=False), ()
     except InputError as why:
-        return tuple(_possible(raw, said_of)), () if why.found == NO_FORCE and unfinished else (why, *why.others)
+        return tuple(_possible(raw, known_meanings)), () if why.found == NO_FORCE and unfinished else (why, *why.others)
 
 
 def _primes_by_name(
-    raw: RawTable, columns: Sequence[Assigned], said: Mapping[str, ColumnMap], unsized: Collection[str]
+    raw: RawTable, columns: Sequence[Assigned], meanings: Mapping[str, ColumnMap], unsized: Collection[str]
 ) -> bool:
     """Whether a force is a prime by its name alone, not one of a size that is still open."""
-    by_name = {c.name for c in raw.columns if not {c.name, *known_as(c)} & set(said)} - set(unsized)
-    forces = (c for c in columns if c.said.role == "force" and c.column.name in by_name)
-    return any(c.said.pure and not c.said.area for c in forces)
+    by_name = {c.name for c in raw.columns if not {c.name, *known_as(c)} & set(meanings)} - set(unsized)
+    forces = (c for c in columns if c.meaning.role == "force" and c.column.name in by_name)
+    return any(c.meaning.pure and not c.meaning.area for c in forces)
 
 
 def _likely_map(column: RawColumn, offer: Proposal) -> ColumnMap:
@@ -311,29 +313,31 @@ def _across(columns: Sequence[Assigned], frame: Axes | None, settings: Settings)
 
 def _of_half(offer: Proposal, cut: Cut, frame: Axes | None) -> Proposal:
     """What a column of half of a body is: of the components that the cut loses, nothing that is used."""
-    given = offer.said
-    own = {c: name for c, (name, _) in frame.columns.items()} if frame else {c: c for c in cut.lost}
-    if given is None or given.role not in ("force", "error") or given.name not in [own[c] for c in cut.lost]:
+    given = offer.meaning
+    own = {c: name for c, (name, _) in frame.columns.items()} if frame else {c: c for c in cut.cancelled}
+    if given is None or given.role not in ("force", "error") or given.name not in [own[c] for c in cut.cancelled]:
         return offer
-    return Proposal("ignore", f"{LOST}, cut at {cut.plane}; {given} of the whole is not known", certain=True)
+    return Proposal("ignore", f"{HALF_ONLY}, cut at {cut.plane}; {given} of the whole is not known", certain=True)
 
 
-def _said_of(column: RawColumn, said: Mapping[str, ColumnMap]) -> ColumnMap | None:
+def _meaning_of(column: RawColumn, meanings: Mapping[str, ColumnMap]) -> ColumnMap | None:
     """What a person said of a column, or of the force whose error it is."""
-    return next((said[name] for name in (column.name, *known_as(column)) if name in said), error_of(column, said))
+    return next(
+        (meanings[name] for name in (column.name, *known_as(column)) if name in meanings), error_of(column, meanings)
+    )
 
 
 def _offers(
-    raw: RawTable, said: Mapping[str, ColumnMap], settings: Settings, frame: Axes | None, cut: Cut | None
+    raw: RawTable, meanings: Mapping[str, ColumnMap], settings: Settings, frame: Axes | None, cut: Cut | None
 ) -> tuple[Proposal, ...]:
     """What every column may be; where a person called one a coefficient without its area, that by the area that all share."""
     known = {key: settings[key].value for key in (*EXTRA, "scaling.length") if key in settings}
     out = []
     for column, offer in zip(raw.columns, proposals(raw, known, frame), strict=True):
-        one = _said_of(column, said)
+        one = _meaning_of(column, meanings)
         lacks = one is not None and lacks_sizes(column, one)
         out.append(
-            coefficient_as_said(one, known)
+            coefficient_by_sizes(one, known)
             if one is not None and lacks
             else _of_half(offer, cut, frame)
             if cut
@@ -348,8 +352,8 @@ def _in_vain(
     """What no answer mends: a single row, lift without drag, drag at a drift angle without side, a speed of zero; a warning where a
     column is left that may be what lacks.
     """
-    said_of = dict(mapping) | {c.name: o.said for c, o in still if o.said}
-    names = {m.name: name for name, m in said_of.items() if not m.error}
+    known_meanings = dict(mapping) | {c.name: o.meaning for c, o in still if o.meaning}
+    names = {m.name: name for name, m in known_meanings.items() if not m.error}
     moving = [c.name for c in raw.columns if np.any(np.nan_to_num(c.values))]
     wind = next((w for w in WIND if w in names), "")
     vain = []
@@ -375,8 +379,12 @@ def _in_vain(
 
 def _at_rest(raw: RawTable, columns: Sequence[Assigned]) -> Iterator[Evidence]:
     """A warning where no setting is anything but zero, with the columns that vary and that no fit would use."""
-    moving = [c for c in columns if c.said.role in ("angle", "velocity", "control", "radius") and c.said.name != "u"]
-    if any(np.any(np.nan_to_num(c.values) != 0.0) for c in moving) or not any(c.said.role == "force" for c in columns):
+    moving = [
+        c for c in columns if c.meaning.role in ("angle", "velocity", "control", "radius") and c.meaning.name != "u"
+    ]
+    if any(np.any(np.nan_to_num(c.values) != 0.0) for c in moving) or not any(
+        c.meaning.role == "force" for c in columns
+    ):
         return
     used = {c.column.name for c in columns}
     idle = [c for c in raw.columns if c.name not in used and np.unique(c.values[np.isfinite(c.values)]).size > 1]
@@ -394,12 +402,12 @@ def _at_rest(raw: RawTable, columns: Sequence[Assigned]) -> Iterator[Evidence]:
 
 def _two_ways(raw: RawTable, columns: Sequence[Assigned]) -> Iterator[InputError]:
     """The complaint about angles of the flow beside components of the speed: which of both holds cannot be known."""
-    angles = [c for c in columns if c.said.role == "angle"]
-    linear = [c for c in columns if c.said.role == "velocity" and c.said.name in LINEAR]
+    angles = [c for c in columns if c.meaning.role == "angle"]
+    linear = [c for c in columns if c.meaning.role == "velocity" and c.meaning.name in LINEAR]
     if not angles or not linear:
         return
     named, speeds = (listed([c.column.name for c in some]) for some in (angles, linear))
-    alone = len(linear) == 1 and linear[0].said.name == "u"
+    alone = len(linear) == 1 and linear[0].meaning.name == "u"
     way = f"Give --map {shlex.quote(f'{linear[0].column.name}=U [m/s]')} where {speeds} is the speed." * alone
     yield input_error(
         "tables.angles_and_velocities", raw.path, column=named, named=named, speeds=speeds,
@@ -409,10 +417,12 @@ def _two_ways(raw: RawTable, columns: Sequence[Assigned]) -> Iterator[InputError
 
 def _is_straight(columns: Sequence[Assigned]) -> bool:
     """Whether a surge force stands beside three speeds or more, so that straight runs give X0'."""
-    speeds = [c for c in columns if c.said.role == "speed" or (c.said.role == "velocity" and c.said.name == "u")]
+    speeds = [
+        c for c in columns if c.meaning.role == "speed" or (c.meaning.role == "velocity" and c.meaning.name == "u")
+    ]
     found = [np.unique(c.values[np.isfinite(c.values)]).size for c in speeds]
     return max(found, default=0) >= FEWEST_SPEEDS and any(
-        c.said.role == "force" and c.said.name in ("X", "drag") for c in columns
+        c.meaning.role == "force" and c.meaning.name in ("X", "drag") for c in columns
     )
 
 
@@ -430,15 +440,15 @@ def _turned_by_words(
     """Rates that turn to another side, by the axes, than words over the table say."""
     words = raw.stated.get(TURN_OF_R)
     for one in columns if frame and words else ():
-        if one.said.name != "r" or one.said.error or set(settled) & {one.column.name, *known_as(one.column)}:
+        if one.meaning.name != "r" or one.meaning.error or set(settled) & {one.column.name, *known_as(one.column)}:
             continue
-        turn = turn_of(one.said, frame)  # type: ignore[arg-type]
+        turn = turn_of(one.meaning, frame)  # type: ignore[arg-type]
         if turn.startswith("turns") and str(words.value) not in turn and one.column not in [d.column for d in doubts]:  # type: ignore[union-attr]
-            yield Doubt(one.column, one.said, f"{words.place}, but by the axes r > 0 {turn}", turn)  # type: ignore[union-attr]
+            yield Doubt(one.column, one.meaning, f"{words.place}, but by the axes r > 0 {turn}", turn)  # type: ignore[union-attr]
 
 
 def _doubt(one: Assigned, shows: Evidence, frame: Axes | None) -> Doubt:
-    words = replace(one.said, name=shows.instead, negative=False) if shows.instead else one.said
+    words = replace(one.meaning, name=shows.instead, negative=False) if shows.instead else one.meaning
     return Doubt(one.column, words, shows.text, turn_of(words, frame) if frame else "", bool(shows.instead))
 
 
@@ -456,10 +466,10 @@ def _astern(raw: RawTable, back: Assigned, frame: Axes) -> InputError:
     return fault("tables.moves_astern", raw, back.column, other=other)
 
 
-def _possible(raw: RawTable, said: Mapping[str, ColumnMap]) -> Iterator[Assigned]:
+def _possible(raw: RawTable, meanings: Mapping[str, ColumnMap]) -> Iterator[Assigned]:
     """Columns of which what is said of them is possible."""
     for column in raw.columns:
-        one = entry_of(column, said)
+        one = entry_of(column, meanings)
         if one is None or one.name == "ignore":
             continue
         try:

@@ -31,9 +31,9 @@ def slopes_by_idle_columns(raw: RawTable, columns: Sequence[Assigned]) -> Iterat
     raw : RawTable
     columns : sequence of Assigned
     """
-    settings = {c.said.name: c for c in columns if c.said.name in SWEPT and not c.said.error}
-    speed = next((c.values for c in columns if c.said.role == "speed"), None)
-    used = {c.column.name for c in columns if c.said.name not in ("label", "point", "uncertain", *PROPELLER)}
+    settings = {c.meaning.name: c for c in columns if c.meaning.name in SWEPT and not c.meaning.error}
+    speed = next((c.values for c in columns if c.meaning.role == "speed"), None)
+    used = {c.column.name for c in columns if c.meaning.name not in ("label", "point", "uncertain", *PROPELLER)}
     mach = at_higher_mach(raw, columns)[0]
     if mach:
         yield Evidence(f"rows above the lowest {mach} are left out, as a prime holds at one; {mach}=label takes all")
@@ -71,14 +71,14 @@ def _by_column(
     for name, swept in settings.items():
         others = [np.abs(np.nan_to_num(c.values)) <= AT_REST for n, c in settings.items() if n != name]
         alone = np.logical_and.reduce([*others, np.ones(len(idle.values), dtype=bool)])
-        for force in (c for c in columns if c.said.role == "force" and c.said.name in SWEPT[name]):
-            y = force.values if force.said.pure or speed is None else force.values / speed**2
+        for force in (c for c in columns if c.meaning.role == "force" and c.meaning.name in SWEPT[name]):
+            y = force.values if force.meaning.pure or speed is None else force.values / speed**2
             found = slopes_by_level(swept.values[alone], y[alone], idle.values[alone], max(len(names), MOST_LEVELS))
             if found is not None and (found.depends or found.offsets > SHARE):
                 levels = [str(names[round(v)]) if len(names) else f"{v:.6g}" for v in found.levels]
                 kind, size = ("slope", found.spread) if found.depends else ("offset", found.offsets)
                 given = words(Finding.of(
-                    "levels.column", "table", Severity.WARN, statistic=size, threshold=SHARE, symbol=f"the {kind} of {force.said.name} over {name}", kind=kind,
+                    "levels.column", "table", Severity.WARN, statistic=size, threshold=SHARE, symbol=f"the {kind} of {force.meaning.name} over {name}", kind=kind,
                     advice=f'--map "{idle.name}=label", then select = {{ "{idle.name}" = "{levels[0]}" }} in campaign.toml',
                     slopes=tuple(f"{s:.3g}" for s in found.slopes[:SHOWN]), column=idle.name,
                     levels=tuple(v if len(names) else f"{float(v):.4g}" for v in levels[:SHOWN]),

@@ -79,24 +79,24 @@ def above_low_aspect(
 def _slope(columns: Sequence[Assigned], frame: Axes, settings: Settings) -> float | None:
     """Yv' by L^2 through the rows of small drift; None without such rows or sizes."""
     side = frd_column(columns, "Y", frame)
-    drift = next((c for c in columns if c.said.name == "beta"), None) or frd_column(columns, "v", frame)
+    drift = next((c for c in columns if c.meaning.name == "beta"), None) or frd_column(columns, "v", frame)
     if side is None or drift is None or "scaling.length" not in settings:
         return None
     try:
         length = quantity(settings["scaling.length"].value, "length")
         y = side.values
         unit: Array | float = 1.0
-        if side.said.area:
-            unit = length**2 / side.said.area
-        elif not side.said.pure:
+        if side.meaning.area:
+            unit = length**2 / side.meaning.area
+        elif not side.meaning.pure:
             unit = (
                 0.5
                 * _of(columns, "density", "conditions.density", settings)
                 * _of(columns, "U", "conditions.speed", settings) ** 2
                 * length**2
             )
-        x = np.sin(drift.values) if drift.said.name == "beta" else drift.values
-        if drift.said.name != "beta" and not drift.said.primed:
+        x = np.sin(drift.values) if drift.meaning.name == "beta" else drift.values
+        if drift.meaning.name != "beta" and not drift.meaning.primed:
             x = x / _of(columns, "U", "conditions.speed", settings)
     except (InputError, KeyError):
         return None
@@ -109,5 +109,5 @@ def _slope(columns: Sequence[Assigned], frame: Axes, settings: Settings) -> floa
 
 def _of(columns: Sequence[Assigned], name: str, key: str, settings: Settings) -> Array | float:
     """A column in SI, else the number of the campaign."""
-    column = next((c for c in columns if c.said.name == name), None)
+    column = next((c for c in columns if c.meaning.name == name), None)
     return column.values if column is not None else quantity(settings[key].value, {"U": "speed"}.get(name, name))

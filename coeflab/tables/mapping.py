@@ -58,14 +58,14 @@ class Assigned:
     Attributes
     ----------
     column : RawColumn
-    said : ColumnMap
+    meaning : ColumnMap
         Its unit is known.
     factor : float
         Makes SI of the file's numbers, with the sign; of primes and coefficients the sign only.
     """
 
     column: RawColumn
-    said: ColumnMap
+    meaning: ColumnMap
     factor: float = 1.0
 
     @property
@@ -159,7 +159,7 @@ def assigned(raw: RawTable, mapping: Mapping[str, ColumnMap], whole: bool = True
                 near=f"Did you mean {shown(near[0])}?" if near else "",
             )
         )  # fmt: skip
-    if not any(a.said.role == "force" for a in out) and not complaints:
+    if not any(a.meaning.role == "force" for a in out) and not complaints:
         complaints.append(InputError(NO_FORCE, "at least one of X Y Z K M N", file=raw.path))
     if complaints:
         raise together(complaints)
@@ -177,7 +177,7 @@ def _unmapped(raw: RawTable, column: RawColumn) -> InputError:
     return fault("tables.unidentified_column", raw, column, own=shown(column.name))
 
 
-def with_unit(raw: RawTable, column: RawColumn, said: ColumnMap) -> Assigned:
+def with_unit(raw: RawTable, column: RawColumn, meaning: ColumnMap) -> Assigned:
     """The column with the unit that the mapping gives, else the file's own.
 
     Raises
@@ -185,53 +185,64 @@ def with_unit(raw: RawTable, column: RawColumn, said: ColumnMap) -> Assigned:
     InputError
         No unit, an impossible one, or two that do not agree; no number in the column.
     """
-    sign = -1.0 if said.negative else 1.0
-    if said.name == "cells" and (bad := np.flatnonzero(column.values <= 0.0)).size:
+    sign = -1.0 if meaning.negative else 1.0
+    if meaning.name == "cells" and (bad := np.flatnonzero(column.values <= 0.0)).size:
         raise fault("tables.no_count_of_cells", raw, column, row=int(bad[0]), values=column.values[bad[0]])
-    if said.name in WORDS:
-        return Assigned(column, said)
+    if meaning.name in WORDS:
+        return Assigned(column, meaning)
     if not np.any(np.isfinite(column.values)):
         example = f", such as {shown(column.texts[0])}" if column.texts else ""
         raise fault("tables.no_number_in_column", raw, column, example=example)
-    if said.pure:
+    if meaning.pure:
         stated = column.unit.strip(" -1")
-        if fits(stated, said.dimension):
-            raise fault("tables.unit_of_pure_number", raw, column, unit=column.unit, said=said)
+        if fits(stated, meaning.dimension):
+            raise fault("tables.unit_of_pure_number", raw, column, unit=column.unit, said=meaning)
         by_header = counted_in(column.name, column.unit)[1]
-        counted, declared = share(by_header), share(said.unit)
+        counted, declared = share(by_header), share(meaning.unit)
         if not declared if by_header == "?" else counted is None and any(ch.isdigit() for ch in stated):
-            raise fault("tables.digits_in_a_unit", raw, column, unit=header(column), said=said)
+            raise fault("tables.digits_in_a_unit", raw, column, unit=header(column), said=meaning)
         if declared and stated and counted is not None and counted != declared:
             raise fault(
-                "tables.two_units", raw, column, unit=column.unit, meant=said.unit, plain=replace(said, unit="-")
+                "tables.two_units", raw, column, unit=column.unit, meant=meaning.unit, plain=replace(meaning, unit="-")
             )
-        return Assigned(column, said, sign * (declared or counted or 1.0))
-    if said.unit == OPEN_SIZES:
+        return Assigned(column, meaning, sign * (declared or counted or 1.0))
+    if meaning.unit == OPEN_SIZES:
         raise fault(
-            "tables.coefficient_without_area", raw, column, said=said, plain=said.plain, per=PER[said.dimension]
+            "tables.coefficient_without_area",
+            raw,
+            column,
+            said=meaning,
+            plain=meaning.plain,
+            per=PER[meaning.dimension],
         )
-    own = factor(column.unit, said.dimension) if fits(column.unit, said.dimension) else None
-    unit = said.unit or column.unit
-    if not unit or (unit == "-" and not said.unit):
-        example = EXAMPLES[said.dimension]
-        pure = f"; or {said.plain}' for a prime" if said.role in ("force", "velocity", "error") else ""
-        pure += f", {said.plain} [{PER[said.dimension]}] for a coefficient" if said.role in ("force", "error") else ""
+    own = factor(column.unit, meaning.dimension) if fits(column.unit, meaning.dimension) else None
+    unit = meaning.unit or column.unit
+    if not unit or (unit == "-" and not meaning.unit):
+        example = EXAMPLES[meaning.dimension]
+        pure = f"; or {meaning.plain}' for a prime" if meaning.role in ("force", "velocity", "error") else ""
+        pure += (
+            f", {meaning.plain} [{PER[meaning.dimension]}] for a coefficient"
+            if meaning.role in ("force", "error")
+            else ""
+        )
         raise fault(
-            "tables.column_of_no_unit", raw, column, found="no unit" if not unit else "[-]", dimension=said.dimension,
-            own=shown(column.name), said=said, example=example, pure=pure,
+            "tables.column_of_no_unit", raw, column, found="no unit" if not unit else "[-]", dimension=meaning.dimension,
+            own=shown(column.name), said=meaning, example=example, pure=pure,
         )  # fmt: skip
     try:
-        size = factor(unit, said.dimension)
+        size = factor(unit, meaning.dimension)
     except UnitsError as why:
         raise why.at(raw.path, raw.header_line or None, header(column)) from None
-    if said.unit and own is not None and abs(own / size - 1.0) > 1e-9:
-        raise fault("tables.two_units", raw, column, unit=column.unit, meant=said.unit, plain=replace(said, unit=""))
-    return Assigned(column, replace(said, unit=unit), sign * size / (said.ship**0.5 or 1.0))
+    if meaning.unit and own is not None and abs(own / size - 1.0) > 1e-9:
+        raise fault(
+            "tables.two_units", raw, column, unit=column.unit, meant=meaning.unit, plain=replace(meaning, unit="")
+        )
+    return Assigned(column, replace(meaning, unit=unit), sign * size / (meaning.ship**0.5 or 1.0))
 
 
 def usable_rows(raw: RawTable, columns: Sequence[Assigned]) -> NDArray[np.int64]:
     """Rows with a number in every setting, and of several Mach numbers those of the lowest."""
-    blank = [_lacking(one) for one in columns if one.said.role in SETTINGS]
+    blank = [_lacking(one) for one in columns if one.meaning.role in SETTINGS]
     return np.flatnonzero(~np.logical_or.reduce([at_higher_mach(raw, columns)[1], *blank]))
 
 
@@ -263,11 +274,11 @@ def at_higher_mach(raw: RawTable, columns: Sequence[Assigned]) -> tuple[str, NDA
 def without_a_setting(raw: RawTable, columns: Sequence[Assigned]) -> Iterator[str]:
     """Rows without a setting, in a sentence for each column that lacks it, and those of higher Mach numbers."""
     for one in columns:
-        if one.said.role not in SETTINGS:
+        if one.meaning.role not in SETTINGS:
             continue
         blank = np.flatnonzero(_lacking(one))
         if blank.size:
-            above = " above zero" * (one.said.role == "speed" and not np.all(np.isnan(one.values[blank])))
+            above = " above zero" * (one.meaning.role == "speed" and not np.all(np.isnan(one.values[blank])))
             yield f"left out, no {one.column.name}{above}: {places(raw, blank)}"
     mach, higher = at_higher_mach(raw, columns)
     if mach:
@@ -277,7 +288,7 @@ def without_a_setting(raw: RawTable, columns: Sequence[Assigned]) -> Iterator[st
 def _lacking(one: Assigned) -> NDArray[np.bool_]:
     """Rows without a number in a setting, or at rest where others move: of those nothing can be primed."""
     moving = np.nan_to_num(one.values) != 0.0
-    return np.asarray(~moving if one.said.role == "speed" and np.any(moving) else np.isnan(one.values))
+    return np.asarray(~moving if one.meaning.role == "speed" and np.any(moving) else np.isnan(one.values))
 
 
 def places(raw: RawTable, rows: Sequence[int] | NDArray[np.int64]) -> str:
@@ -308,41 +319,41 @@ def _columns(raw: RawTable, known: Sequence[Assigned], campaign: Campaign) -> Co
     given: dict[str, dict[str, Array]] = {r: {} for r in (*SETTINGS, "error", "force", "propeller")}
     primes: dict[str, Array] = {}
     for one in known:
-        if one.said.role in given:
+        if one.meaning.role in given:
             values = one.values[rows]
-            given[one.said.role][one.said.name] = values
-            if one.said.primed and one.said.role == "velocity":
-                primes[one.said.name] = values
+            given[one.meaning.role][one.meaning.name] = values
+            if one.meaning.primed and one.meaning.role == "velocity":
+                primes[one.meaning.name] = values
     own = {name: values for name, values in given["velocity"].items() if name not in primes}
     speed = speed_of_rows(given["speed"].get("U"), own, primes, campaign, len(rows), bool(given["angle"]))
     density = given["density"].get("density", np.full(len(rows), campaign.conditions.density))
     for one in known:
-        if one.said.per_speed:
-            given[one.said.role][one.said.name] = given[one.said.role][one.said.name] * speed**2
-        if one.said.pure:
-            unit = campaign.scaling.unit(one.said.component, density, speed)
-            if one.said.area:
-                unit = 0.5 * density * speed**2 * one.said.area * (one.said.length or 1.0)
-            given[one.said.role][one.said.name] = given[one.said.role][one.said.name] * unit
+        if one.meaning.per_speed:
+            given[one.meaning.role][one.meaning.name] = given[one.meaning.role][one.meaning.name] * speed**2
+        if one.meaning.pure:
+            unit = campaign.scaling.unit(one.meaning.component, density, speed)
+            if one.meaning.area:
+                unit = 0.5 * density * speed**2 * one.meaning.area * (one.meaning.length or 1.0)
+            given[one.meaning.role][one.meaning.name] = given[one.meaning.role][one.meaning.name] * unit
     lines = raw.lines[rows] if len(raw.lines) else rows + 1
-    point = next((texts_of(one.column) for one in known if one.said.name == "point"), list(raw.row_labels))
+    point = next((texts_of(one.column) for one in known if one.meaning.name == "point"), list(raw.row_labels))
     if not point and not len(raw.lines):
         point = [f"row {row + 1}" for row in range(len(raw))]
-    numbered = {one.said.name: one.values[rows] for one in known if one.said.role == "force"}
+    numbered = {one.meaning.name: one.values[rows] for one in known if one.meaning.role == "force"}
     blank = {name: np.isnan(values) for name, values in numbered.items()}
     words = doubtful(raw, known)
     return Columns(
         file=raw.path,
         header_line=raw.header_line,
         lines=tuple(int(line) for line in lines),
-        headers={one.said.plain: header(one.column) for one in known if one.said.name not in WORDS},
+        headers={one.meaning.plain: header(one.column) for one in known if one.meaning.name not in WORDS},
         angles=given["angle"],
         velocity=given["velocity"],
         controls=given["control"],
         speed=speed,
         forces=given["force"],
         errors=given["error"],
-        labels={one.column.name: _taken(texts_of(one.column), rows) for one in known if one.said.name == "label"},
+        labels={one.column.name: _taken(texts_of(one.column), rows) for one in known if one.meaning.name == "label"},
         doubtful=tuple(frozenset(n for n, mask in blank.items() if mask[i]) | words[row] for i, row in enumerate(rows)),
         row_labels=tuple(_taken(point, rows)) if point else (),
         files=raw.files,
@@ -363,15 +374,15 @@ def doubtful(raw: RawTable, known: Sequence[Assigned]) -> list[frozenset[str]]:
     InputError
         A word that is the name of no column.
     """
-    column = next((one.column for one in known if one.said.name == "uncertain"), None)
-    names = {one.said.name for one in known if one.said.name not in WORDS}
-    forces = frozenset(one.said.name for one in known if one.said.role == "force")
+    column = next((one.column for one in known if one.meaning.name == "uncertain"), None)
+    names = {one.meaning.name for one in known if one.meaning.name not in WORDS}
+    forces = frozenset(one.meaning.name for one in known if one.meaning.role == "force")
     starred = _starred(known, len(raw))
     if column is None:
         return [forces if star else frozenset() for star in starred]
     used = {one.column.name for one in known}
     own = {n: "" for c in raw.columns for n in (c.name, c.means) if n and n not in used | names | {ALL}}
-    own |= {one.column.name: one.said.name for one in known if one.said.name in names and not one.said.error}
+    own |= {one.column.name: one.meaning.name for one in known if one.meaning.name in names and not one.meaning.error}
     out = []
     for row, text in enumerate(texts_of(column)):
         if starred[row] or MARKS.fullmatch(text.strip()):
@@ -395,7 +406,7 @@ def _starred(known: Sequence[Assigned], rows: int) -> NDArray[np.bool_]:
     """Rows whose name or label ends in a star, where less than half do."""
     out = np.zeros(rows, dtype=bool)
     for one in known:
-        if one.said.name in ("point", "label") and one.column.is_text:
+        if one.meaning.name in ("point", "label") and one.column.is_text:
             stars = np.array([text.rstrip(") ").endswith("*") for text in one.column.texts], dtype=bool)
             if 2 * stars.sum() < rows:
                 out |= stars
@@ -412,8 +423,8 @@ def another_density(raw: RawTable, known: Sequence[Assigned], density: float) ->
     Primes divide by the declared density: with rhoInf 1 of a solver and 998.2 here they would be 1/998 of what they are.
     """
     given = raw.stated.get("conditions.density")
-    own = any(one.said.name == "density" for one in known)
-    in_newton = any(one.said.role == "force" and not one.said.pure for one in known)
+    own = any(one.meaning.name == "density" for one in known)
+    in_newton = any(one.meaning.role == "force" and not one.meaning.pure for one in known)
     if given is None or given.offered or not isinstance(given.value, float) or own or not in_newton:
         return None
     if abs(density - given.value) <= SAME_DENSITY * abs(given.value):
@@ -466,7 +477,7 @@ def mapped_table(raw: RawTable, campaign: Campaign, table: TableDeclaration) -> 
     columns = _columns(raw, known, campaign)
     out = force_table(columns, campaign, table)
     rows = usable_rows(raw, known)
-    written = {one.said.name: one for one in known if one.said.role == "force" and one.column.texts}
+    written = {one.meaning.name: one for one in known if one.meaning.role == "force" and one.column.texts}
     exclusions = tuple(
         replace(e, reason=e.reason.replace(BLANK, _found(written.get(e.component), int(rows[e.row]))))
         if e.component and not e.uncertain
@@ -474,10 +485,10 @@ def mapped_table(raw: RawTable, campaign: Campaign, table: TableDeclaration) -> 
         for e in out.exclusions
     )
     body = BODY_AXES in raw.stated
-    warned = [text for one in known if not body and (text := unturned(one.column.name, one.said))]
+    warned = [text for one in known if not body and (text := unturned(one.column.name, one.meaning))]
     words = [*warned, *without_a_setting(raw, known), *raw.remarks]
     more = [f"{len(words) - REMARKS} more remarks; coeflab inspect lists them"] if len(words) > REMARKS else []
-    cells = next((one.values[rows] for one in known if one.said.name == "cells"), None)
+    cells = next((one.values[rows] for one in known if one.meaning.name == "cells"), None)
     notes = (*out.notes, *words[:REMARKS], *more)
     out = replace(out, exclusions=exclusions, notes=notes, cells=cells, uncertainty=campaign.uncertainty)
     return out if cells is None else out.on_one_grid()

@@ -386,8 +386,8 @@ def pieced(monitors: Sequence[Monitor], index: int) -> Monitor:
         selected = whole.columns[index] < begins
         remarks = (*whole.remarks, *later.remarks)
         if not selected.all():
-            lost = f"{int((~selected).sum())} lines of {whole.path.name} from there on left out"
-            remarks = (*remarks, f"{later.path.name} begins at {whole.names[index]} {begins:g}: {lost}")
+            left_out = f"{int((~selected).sum())} lines of {whole.path.name} from there on left out"
+            remarks = (*remarks, f"{later.path.name} begins at {whole.names[index]} {begins:g}: {left_out}")
         columns = [np.concatenate([a[selected], b]) for a, b in zip(whole.columns, later.columns, strict=True)]
         lines = np.concatenate([whole.lines[selected], later.lines])
         whole = Monitor(later.path, whole.names, columns, lines, whole.header_line, remarks, later.crashed)

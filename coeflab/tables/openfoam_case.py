@@ -255,11 +255,11 @@ def rotating_frame(case: FoamCase, wanted: str, body: set[str], known: Mapping[s
             continue
         zone = next(iter(case.listed(part, "cellZone") or case.listed(part, "cellSet")), "")
         share = _share_of_mesh(case, zone) if zone else None
-        stands = body & matching_patches(case.listed(part, "nonRotatingPatches"), known)
+        still = body & matching_patches(case.listed(part, "nonRotatingPatches"), known)
         rotor = (
             "as the option rotation says so" if wanted == "none"
             else "" if wanted == "body"
-            else "as it does not turn the body's patches" if stands
+            else "as it does not turn the body's patches" if still
             else f"as it covers {share:.0%} of the cells" if share is not None and share < 1.0
             else ""
         )  # fmt: skip

@@ -187,13 +187,13 @@ def _read_file(case: FoamCase, file: Path, kind: str) -> History:
     if kind == "force":
         moments = file.with_name(file.name.replace("force", "moment", 1))
         if moments.is_file():
-            _beside(out, _read_file(case, moments, "moment"), place)
+            _add_moments(out, _read_file(case, moments, "moment"), place)
         else:
             out.remarks.append(f"{place}: no {moments.name} in the same folder, so no moments")
     return out
 
 
-def _beside(forces: History, moments: History, place: str) -> None:
+def _add_moments(forces: History, moments: History, place: str) -> None:
     """Add the moments of the same times."""
     one, other = forces.values["time"], moments.values.pop("time")
     if not np.array_equal(one, other, equal_nan=True):

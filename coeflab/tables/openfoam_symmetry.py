@@ -102,16 +102,16 @@ def _named_in(case: FoamCase, path: Path, depth: int = 0) -> Iterator[str]:
         text = _COMMENTS.sub(lambda m: b"\n" * m[0].count(b"\n"), raw)
         if not _ALL_KINDS.search(text):
             for m in _TYPED.finditer(text):
-                yield _said(case, path, text, m.start(), _patch_at(text, m.start()), m[1])
+                yield _symmetry_place(case, path, text, m.start(), _patch_at(text, m.start()), m[1])
             for m in _LISTED.finditer(text):
-                yield _said(case, path, text, m.start(), m[2].decode("utf-8", "replace"), m[1])
+                yield _symmetry_place(case, path, text, m.start(), m[2].decode("utf-8", "replace"), m[1])
     for m in _INCLUDED.finditer(raw[: 1 << 20]) if depth < 2 else ():
         inner = path.parent / m[1].decode("utf-8", "replace")
         if inner.is_file() and inner.resolve().is_relative_to(case.root.resolve()):
             yield from _named_in(case, inner, depth + 1)
 
 
-def _said(case: FoamCase, path: Path, text: bytes, at: int, patch: str, kind: bytes) -> str:
+def _symmetry_place(case: FoamCase, path: Path, text: bytes, at: int, patch: str, kind: bytes) -> str:
     line = text.count(b"\n", 0, at) + 1
     return f"{case.relative(path)}:{line}: patch {patch} is of type {kind.decode()}"
 

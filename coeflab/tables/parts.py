@@ -146,7 +146,7 @@ def read_parts(
     except InputError:
         if not 0 < str(given.get("sheet", "")).count(",") < MOST:
             raise
-        return _of_sheets(path, name, given, [s.strip() for s in str(given["sheet"]).split(",")], said=True)
+        return _of_sheets(path, name, given, [s.strip() for s in str(given["sheet"]).split(",")], stated=True)
 
 
 def joined_components(tables: Sequence[RawTable]) -> tuple[RawTable, ...]:
@@ -176,8 +176,8 @@ def _conditions(table: RawTable) -> tuple[list[str], list[tuple[float, ...]]]:
 
 def _measured(table: RawTable) -> dict[str, RawColumn]:
     """Columns of numbers that differ between runs by what they hold: no setting, no count of iterations."""
-    beside = ("", *COMPONENTS, *(f"se_{c}" for c in COMPONENTS))
-    return {c.means or c.name: c for c in table.columns if not c.is_text and c.means in beside}
+    endings = ("", *COMPONENTS, *(f"se_{c}" for c in COMPONENTS))
+    return {c.means or c.name: c for c in table.columns if not c.is_text and c.means in endings}
 
 
 def _complements(one: RawTable, other: RawTable) -> bool:
@@ -212,7 +212,7 @@ def _side_by_side(one: RawTable, other: RawTable) -> RawTable:
 
 
 def _of_sheets(
-    path: Path, name: str, options: Mapping[str, Any], sheets: Sequence[str], said: bool = False
+    path: Path, name: str, options: Mapping[str, Any], sheets: Sequence[str], stated: bool = False
 ) -> tuple[tuple[Part, ...], tuple[Chosen, ...]]:
     """The sheets with forces, or those that somebody said."""
     tables: dict[str, RawTable] = {}
@@ -224,9 +224,9 @@ def _of_sheets(
         except InputError as unread:
             complaints.append(unread)
             left[sheet] = str(unread)
-    if said and complaints:
+    if stated and complaints:
         raise together(complaints)
-    if not said:
+    if not stated:
         bare = [s for s, raw in tables.items() if why_no_table(raw)]
         left |= {s: why_no_table(tables[s]) for s in bare}
         tables = {s: raw for s, raw in tables.items() if s not in bare} or dict(list(tables.items())[:1])
@@ -236,7 +236,7 @@ def _of_sheets(
     value = ", ".join(tables)
     why = f"{'those' if len(tables) > 1 else 'the one'} with forces" + f"; others: {', '.join(left)}" * bool(left)
     about = f"Sheets with numbers: {', '.join(sheets)}. One or several with commas between; each becomes a table of the campaign"
-    chosen = () if said else (Chosen("sheet", value, why, about, others),)
+    chosen = () if stated else (Chosen("sheet", value, why, about, others),)
     names = _called(list(tables)) if len(tables) > 1 else [""]
     return tuple(
         Part(n, raw, name, {**options, "sheet": sheet}) for n, (sheet, raw) in zip(names, tables.items(), strict=True)
@@ -330,12 +330,12 @@ def _called(names: Sequence[str]) -> list[str]:
     return out
 
 
-def own(said: Mapping[str, Value], part: Part, parts: Sequence[Part]) -> dict[str, Value]:
+def own(stated: Mapping[str, Value], part: Part, parts: Sequence[Part]) -> dict[str, Value]:
     """What is said of one part: of all together, and under its name."""
     others = tuple(f"{p.name}/" for p in parts if p.name)
-    out = {key: value for key, value in said.items() if not key.startswith(others)} if others else dict(said)
+    out = {key: value for key, value in stated.items() if not key.startswith(others)} if others else dict(stated)
     if part.name:
-        out |= {key.removeprefix(f"{part.name}/"): v for key, v in said.items() if key.startswith(f"{part.name}/")}
+        out |= {key.removeprefix(f"{part.name}/"): v for key, v in stated.items() if key.startswith(f"{part.name}/")}
     return out
 
 

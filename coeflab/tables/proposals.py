@@ -73,14 +73,14 @@ class Proposal:
     assumed: bool = False
 
     @property
-    def said(self) -> ColumnMap | None:
+    def meaning(self) -> ColumnMap | None:
         """What it says, without a unit; None where nothing is known."""
         return read_column_map(self.text.partition(" [")[0]) if self.text else None
 
     @property
     def role(self) -> str:
         """Of what it says; empty where nothing is known."""
-        return self.said.role if self.said else ""
+        return self.meaning.role if self.meaning else ""
 
     @property
     def whole(self) -> bool:
@@ -137,7 +137,7 @@ def proposed(column: RawColumn, stated: Mapping[str, object] | None = None) -> P
     certain = certain and (not counted or bare == own)  # a factor in a name is confirmed
     if not name:
         if column.is_text:
-            held = bool(_lost(column)) or bool(np.any(np.isfinite(column.values)))
+            held = bool(_other_decimal_cells(column)) or bool(np.any(np.isfinite(column.values)))
             held = held and (fits(column.unit, "force") or fits(column.unit, "moment"))
             why = f"{_worded(column)}{allowed(column.unit, column.name.startswith('se_'))}"
             return Proposal("", why) if held else Proposal("label", "text")
@@ -147,7 +147,7 @@ def proposed(column: RawColumn, stated: Mapping[str, object] | None = None) -> P
     given = read_column_map(name)
     if given.name in WORDS:
         return Proposal(name, why, certain)
-    if given.name in FORCES and column.is_text and _lost(column):
+    if given.name in FORCES and column.is_text and _other_decimal_cells(column):
         left = " leaves these cells out" * bool(np.any(np.isfinite(column.values)))
         return Proposal("", f"{_worded(column)}; {name} [{column.unit or OPEN}]{left}, or ignore")
     if column.is_text and not np.any(np.isfinite(column.values)):
@@ -157,9 +157,9 @@ def proposed(column: RawColumn, stated: Mapping[str, object] | None = None) -> P
                 f"its name and unit are of a force, and no cell is a number: {shown(column.texts[0])}; label, or ignore",
             )
         return Proposal("label", "text")
-    said_of = stated or {}
-    by = (said_of.get(AREA), said_of.get(LENGTH_OF))
-    one, system = _with_unit(column, given, why, certain, by), said_of.get(UNITS_OF)
+    known_meanings = stated or {}
+    by = (known_meanings.get(AREA), known_meanings.get(LENGTH_OF))
+    one, system = _with_unit(column, given, why, certain, by), known_meanings.get(UNITS_OF)
     if one.text.endswith(f"[{OPEN}]") and not one.unread and system and given.dimension not in ("angle", "none"):
         either = either_unit(unit, given.dimension)
         units = {
@@ -173,7 +173,7 @@ def proposed(column: RawColumn, stated: Mapping[str, object] | None = None) -> P
     return one
 
 
-def _lost(column: RawColumn) -> list[str]:
+def _other_decimal_cells(column: RawColumn) -> list[str]:
     """Cells that are numbers with the other decimal mark, which the file's mark makes texts."""
     return [
         t for t, v in zip(column.texts, column.values, strict=True) if np.isnan(v) and _DECIMAL.fullmatch(t.strip())
@@ -182,7 +182,9 @@ def _lost(column: RawColumn) -> list[str]:
 
 def _worded(column: RawColumn) -> str:
     """Which cells of a column are no numbers."""
-    words = _lost(column) or [t for t, v in zip(column.texts, column.values, strict=True) if np.isnan(v) and t.strip()]
+    words = _other_decimal_cells(column) or [
+        t for t, v in zip(column.texts, column.values, strict=True) if np.isnan(v) and t.strip()
+    ]
     first = ", ".join(f'"{t.strip()}"' for t in words[:3]) + f" and {len(words) - 3} more" * (len(words) > 3)
     return f"{first} {'is no number' if len(words) == 1 else 'are no numbers'} by the file's decimal mark"
 
@@ -218,38 +220,40 @@ def _by_sizes(name: str, moment: bool, by: tuple[object, object]) -> str:
     return f"{name} [coefficient A={area}" + (f" L={length}]" if moment else "]")
 
 
-def lacks_sizes(column: RawColumn, said: ColumnMap) -> bool:
+def lacks_sizes(column: RawColumn, meaning: ColumnMap) -> bool:
     """Whether a force is called a coefficient, by its column's unit or in words, without area and length."""
-    return said.unit == OPEN_SIZES or (said.role == "force" and not said.unit and column.unit.strip() in ("-", "1"))
+    return meaning.unit == OPEN_SIZES or (
+        meaning.role == "force" and not meaning.unit and column.unit.strip() in ("-", "1")
+    )
 
 
-def coefficient_as_said(said: ColumnMap, known: Mapping[str, object]) -> Proposal:
+def coefficient_by_sizes(meaning: ColumnMap, known: Mapping[str, object]) -> Proposal:
     """A column that a person called a coefficient, by the area and the length that all coefficients share, or as a prime."""
     area, length = known.get(AREA), known.get(LENGTH_OF)
-    name, why = f"{'-' * said.negative}{said.plain}", "as said"
+    name, why = f"{'-' * meaning.negative}{meaning.plain}", "as said"
     if area == "prime":
         return Proposal(f"{name}' [-]", why, certain=True)
-    return Proposal(_by_sizes(name, said.name in MOMENTS, (area, length)), why, certain=True)
+    return Proposal(_by_sizes(name, meaning.name in MOMENTS, (area, length)), why, certain=True)
 
 
-def _with_unit(column: RawColumn, said: ColumnMap, why: str, certain: bool, by: tuple[object, object]) -> Proposal:
+def _with_unit(column: RawColumn, meaning: ColumnMap, why: str, certain: bool, by: tuple[object, object]) -> Proposal:
     unit = " ".join(column.unit.split())
-    if said.role == "propeller":
-        unit = vocabulary().turns.get(unit.casefold(), unit) if said.name == "rps" else unit
+    if meaning.role == "propeller":
+        unit = vocabulary().turns.get(unit.casefold(), unit) if meaning.name == "rps" else unit
         by_name = next((turns for turns in ("rpm", "rps") if turns in folded(column.name)), "")
-        unit = unit or {"rps": by_name, "J": "-"}.get(said.name, "")
-    name = str(said).partition(" [")[0]
-    why += f"; {TURN}" * (said.name == "r")
+        unit = unit or {"rps": by_name, "J": "-"}.get(meaning.name, "")
+    name = str(meaning).partition(" [")[0]
+    why += f"; {TURN}" * (meaning.name == "r")
     counted = share(unit) is not None
-    if said.primed:
+    if meaning.primed:
         return Proposal(f"{name} [{unit if counted else '-'}]", why, certain)
     unit = vocabulary().units.get(unit.casefold(), unit)
-    moment = said.name in MOMENTS
-    is_coefficient = said.name in FORCES and (
+    moment = meaning.name in MOMENTS
+    is_coefficient = meaning.name in FORCES and (
         unit in ("-", "1") or counted or (not unit and is_pure(column.name) and not certain)
     )
     zeros = bool(column.values.size) and not np.any(np.nan_to_num(column.values))
-    if is_coefficient and zeros and said.name not in ("lift", "drag"):  # without drag nothing turns lift
+    if is_coefficient and zeros and meaning.name not in ("lift", "drag"):  # without drag nothing turns lift
         return Proposal("ignore", f"{why}; zeros throughout")
     if is_coefficient and by[0] == "prime":
         return Proposal(f"{name}' [{unit if counted else '-'}]", f"{why}; a prime, as said")
@@ -262,41 +266,41 @@ def _with_unit(column: RawColumn, said: ColumnMap, why: str, certain: bool, by: 
     except InputError:
         if column.name.strip().upper() in ("X", "Y", "Z") and fits(unit, "length"):
             return Proposal("ignore", f"[{unit}] is a length: a position, no force")
-        if any(either_unit(unit, said.dimension)):
+        if any(either_unit(unit, meaning.dimension)):
             return Proposal(f"{name} [{OPEN}]", f"{why}; {unit}: {EITHER}")
-        return _unread(name, said, column.unit, why)
+        return _unread(name, meaning, column.unit, why)
     if whole is not None:
         by_both = why.replace("its name", "its name and unit", 1)
         return Proposal(str(whole), by_both, certain)
-    if not unit and said.dimension != "angle" and (m := _BEHIND.search(column.name)):
-        return _unread(name, said, m[1].strip(), why)
-    if not np.any(np.nan_to_num(column.values)) and said.name not in ("U", "density", "R") and column.values.size:
+    if not unit and meaning.dimension != "angle" and (m := _BEHIND.search(column.name)):
+        return _unread(name, meaning, m[1].strip(), why)
+    if not np.any(np.nan_to_num(column.values)) and meaning.name not in ("U", "density", "R") and column.values.size:
         return Proposal(
-            f"{name} [{'deg' if said.dimension == 'angle' else SI[said.dimension]}]", f"{why}; zeros throughout"
+            f"{name} [{'deg' if meaning.dimension == 'angle' else SI[meaning.dimension]}]", f"{why}; zeros throughout"
         )
-    if said.dimension == "angle" and np.nanmax(np.abs(column.values), initial=0.0) > np.pi:
+    if meaning.dimension == "angle" and np.nanmax(np.abs(column.values), initial=0.0) > np.pi:
         return Proposal(f"{name} [deg]", f"{why}; beyond half a turn in radians")
-    if said.dimension == "angle" and _whole_degrees(column.values):
+    if meaning.dimension == "angle" and _whole_degrees(column.values):
         return Proposal(f"{name} [deg]", f"{why}; whole numbers", assumed=True)
-    return Proposal(f"{name} [{OPEN}]", f"{why}; no unit is stated, such as {EXAMPLES[said.dimension]}")
+    return Proposal(f"{name} [{OPEN}]", f"{why}; no unit is stated, such as {EXAMPLES[meaning.dimension]}")
 
 
-def _unread(name: str, said: ColumnMap, unit: str, why: str) -> Proposal:
+def _unread(name: str, meaning: ColumnMap, unit: str, why: str) -> Proposal:
     """A column whose unit stands in the file and cannot be read: a person says it, and nothing else does."""
-    example = EXAMPLES[said.dimension].replace("*", " ")
-    wanted = f"its unit [{unit}] is none known of {said.dimension}: say such as {name} [{example}]"
+    example = EXAMPLES[meaning.dimension].replace("*", " ")
+    wanted = f"its unit [{unit}] is none known of {meaning.dimension}: say such as {name} [{example}]"
     wanted += f" or {name} [k{example}]" * (example[0] == "N")
     return Proposal(f"{name} [{OPEN}]", f"{why}; {wanted}", unread=unit)
 
 
 def taken_as(one: Assigned) -> str:
     """What a unit text that nobody knows was taken for; empty where the file's unit is known, or there is none."""
-    unit, given = " ".join(one.column.unit.split()), one.said
+    unit, given = " ".join(one.column.unit.split()), one.meaning
     known = fits(vocabulary().units.get(unit.casefold(), unit), given.dimension)
     known |= vocabulary().turns.get(unit.casefold()) == given.unit
     if known or unit in PURE or given.pure or given.per_speed or given.name in WORDS:
         return ""
-    return f"{one.column.name}: the unit [{unit}] of the file is none known; taken as [{one.said.unit}], as said"
+    return f"{one.column.name}: the unit [{unit}] of the file is none known; taken as [{one.meaning.unit}], as said"
 
 
 def _whole_degrees(values: Array) -> bool:

@@ -145,7 +145,7 @@ def without_unit(offer: Proposal) -> bool:
     """Whether a column states no unit, so that one for all such columns may give it; angles are asked one by one."""
     if offer.unread or not offer.text.endswith(f"[{OPEN}]"):
         return False
-    return offer.said is not None and offer.said.dimension not in ("angle", "none")
+    return offer.meaning is not None and offer.meaning.dimension not in ("angle", "none")
 
 
 def _of_coefficients(raw: RawTable, offers: Sequence[Proposal], settings: Settings, primes: bool) -> Iterator[Question]:
@@ -207,12 +207,12 @@ def _of_axes(
              0: "FRD, FLU, CFD or such as aft,port,down"}  # fmt: skip
     pair = pairs[ahead] + (f": {seen}" if seen else "")
     yield _asked("axes.frame", seen=seen and f". {seen}", pair=pair)
-    angles = [c.said.name for c in columns if c.said.role == "angle"]
+    angles = [c.meaning.name for c in columns if c.meaning.role == "angle"]
     follows = {e.key: e for e in shows if e.key}
     for name in dict.fromkeys((*angles, *(name for name in likely if ROLES[name] == "angle"))):
         side = {"beta": "v to starboard", "alpha": "w down"}[name]
         found = follows.get(f"axes.{name}")
-        if any(c.said.name == name and not np.any(np.nan_to_num(c.values)) for c in columns):
+        if any(c.meaning.name == name and not np.any(np.nan_to_num(c.values)) for c in columns):
             yield Question(
                 f"axes.{name}",
                 ANY_SIGN,
@@ -235,7 +235,9 @@ def _of_axes(
             )
             short = f"assumed: {'Yv' if name == 'beta' else 'Zw'}' < 0"
         force = {"beta": "Y", "alpha": "Z"}[name]
-        unclear = frame is not None and not found and any(c.said.name == force and not c.said.error for c in columns)
+        unclear = (
+            frame is not None and not found and any(c.meaning.name == force and not c.meaning.error for c in columns)
+        )
         why = f"; {force} over {name} shows no clear sign: too few rows, or a wrong reading" if unclear else ""
         asked = _asked(
             f"axes.{name}", words="sign", angle=name, formulas=" or ".join(ANGLE_SIGNS[name]), side=side, unclear=why
@@ -255,7 +257,7 @@ def _signs(columns: Sequence[Assigned], angle: str, reading: Any) -> str:
 
 def _holds_anywhere(columns: Sequence[Assigned], likely: Sequence[str]) -> bool:
     """Whether the numbers are the same about every point: forces without moments, of a body that does not turn."""
-    names = {*(c.said.component for c in columns), *(c.said.role for c in columns), *likely}
+    names = {*(c.meaning.component for c in columns), *(c.meaning.role for c in columns), *likely}
     return "force" in names and not names & {*MOMENTS, *ANGULAR, "R", "radius"}
 
 
@@ -320,12 +322,12 @@ def _of_halves(raw: RawTable, settings: Settings, shows: Sequence[Evidence]) -> 
 
 
 def _of_sizes(columns: Sequence[Assigned], settings: Settings, likely: Sequence[str]) -> Iterator[Question]:
-    every = [c for c in columns if c.said.role == "force"]
-    forces = [c.said for c in every if np.any(np.nan_to_num(c.values))] or [
-        c.said for c in every
+    every = [c for c in columns if c.meaning.role == "force"]
+    forces = [c.meaning for c in every if np.any(np.nan_to_num(c.values))] or [
+        c.meaning for c in every
     ]  # zeros are zeros in any unit
     pure = bool(forces) and all(given.pure for given in forces)
-    plain = not any(c.said.role == "velocity" and not c.said.primed for c in columns)
+    plain = not any(c.meaning.role == "velocity" and not c.meaning.primed for c in columns)
     length = next((given.length for given in forces if given.length), 0.0)
     far = _from_the_nose(settings)
     beyond = f"the reference point lies {far:g} m from the nose, further than the {length:g} m of the coefficients; "
@@ -336,7 +338,7 @@ def _of_sizes(columns: Sequence[Assigned], settings: Settings, likely: Sequence[
     median = {role: _median(columns, role) for role in ("speed", "density")}
     if (
         not median["speed"]
-        and (u := next((c for c in columns if c.said.name == "u" and not c.said.primed), None)) is not None
+        and (u := next((c for c in columns if c.meaning.name == "u" and not c.meaning.primed), None)) is not None
     ):
         half = float(np.nanmedian(np.abs(u.values))) if np.any(u.values) else 0.0
         median["speed"] = f"{half:.12g}" if half else ""  # most rows of one velocity at a time stand still along x
@@ -363,10 +365,10 @@ def _from_the_nose(settings: Settings) -> float:
 def _of_rotation(
     raw: RawTable, columns: Sequence[Assigned], settings: Settings, likely: Sequence[str], words: Mapping[str, Any]
 ) -> Iterator[Question]:
-    rates = {c.said.name: np.nan_to_num(c.values) != 0.0 for c in columns if c.said.name in ANGULAR}
+    rates = {c.meaning.name: np.nan_to_num(c.values) != 0.0 for c in columns if c.meaning.name in ANGULAR}
     known = settings[POINT_OF].value if POINT_OF in settings else None
     same = ", ".join(map(str, known)) if isinstance(known, list) else ""
-    arm = "R" in likely or any(c.said.role == "radius" for c in columns)
+    arm = "R" in likely or any(c.meaning.role == "radius" for c in columns)
     if arm:
         side, why, shown = centre_of(columns, frame_of(settings))
         asked = _asked("table.centre", side, centres=", ".join(CENTRES), why=why)
@@ -392,7 +394,7 @@ def _of_rotation(
             asked, choices=f"{'' if at else place}; {asked.choices}".removeprefix("; "), why=place, short=place
         )
         # About one axis alone the moment of inertia holds nothing: omega x I omega = 0.
-        angles = [c.said.name for c in columns if c.said.role == "angle"] + list(likely)
+        angles = [c.meaning.name for c in columns if c.meaning.role == "angle"] + list(likely)
         if np.any(np.sum([*rates.values()], axis=0) > 1) or (arm and "alpha" in angles):
             yield _asked("inertia.inertia")
 
@@ -495,6 +497,6 @@ def _point(value: Any) -> str:
 
 def _median(columns: Sequence[Assigned], role: str) -> str:
     """Of the column of a role, in SI; empty where there is none."""
-    values = next((c.values for c in columns if c.said.role == role), np.empty(0))
+    values = next((c.values for c in columns if c.meaning.role == role), np.empty(0))
     usable = values[np.isfinite(values)]
     return f"{float(np.median(usable)):.12g}" if usable.size else ""

@@ -45,7 +45,7 @@ class RunSummary:
         Name of the column in the history.
     by_name : bool
         The format does not say which column is which component: means and errors go by the names of the columns.
-    beside : mapping of str to (float, str)
+    other_columns : mapping of str to (float, str)
         Mean and unit of the columns that are none of these.
     unsure : mapping of str to bool
         As `coeflab.tables.histories.Plateau` has it.
@@ -84,7 +84,7 @@ class RunSummary:
     units: Mapping[str, str] = field(default_factory=dict)
     headers: Mapping[str, str] = field(default_factory=dict)
     by_name: bool = False
-    beside: Mapping[str, tuple[float, str]] = field(default_factory=dict)
+    other_columns: Mapping[str, tuple[float, str]] = field(default_factory=dict)
     unsure: Mapping[str, bool] = field(default_factory=dict)
     start: float = math.nan
     start_unit: str = ""
@@ -166,7 +166,7 @@ def summarised(run: Run, name: str, *, steady: bool = False) -> RunSummary:
         headers={c: k.name for c, k in columns.items()},
         by_name=by_name,
         unsure=found.unsure,
-        beside={c.name: (float(np.mean(c.values[found.start :])), c.unit) for c in others},
+        other_columns={c.name: (float(np.mean(c.values[found.start :])), c.unit) for c in others},
         start=start,
         start_unit=at.unit if at is not None else "",
         averaged=_averaged(at, found.start, len(history)),
@@ -197,7 +197,7 @@ def _of_last_row(
     return replace(
         common, status=Convergence.FINAL, means=values, errors=dict.fromkeys(values, math.nan),
         units={c: k.unit for c, k in columns.items()}, headers={c: k.name for c, k in columns.items()}, by_name=by_name,
-        beside={c.name: (float(c.values[-1]), c.unit) for c in others if not _RESIDUAL.search(c.name)},
+        other_columns={c.name: (float(c.values[-1]), c.unit) for c in others if not _RESIDUAL.search(c.name)},
         averaged="the last row", window=1, patches=_patches(run, last),
     )  # fmt: skip
 

@@ -116,7 +116,9 @@ def table_of_runs(
     columns.append(_text(WINDOW, [r.averaged for r in rows]))
     columns.append(_text(ORIGIN, [_origin(r, known) for r in rows]))
     columns.append(_text(DOUBTFUL, [doubtful[r.name] for r in rows], means=DOUBTFUL))
-    columns += _beside([r.patches for r in rows], IGNORE) + _beside([r.beside for r in rows], "" if by_name else IGNORE)
+    columns += _extra_columns([r.patches for r in rows], IGNORE) + _extra_columns(
+        [r.other_columns for r in rows], "" if by_name else IGNORE
+    )
     stated, differing = _stated(rows)
     more += [f"{k} differs between runs ({text}) and is left out." for k, text in differing.items()]
     versions = sorted({v for r in rows if (v := r.dialect.get("version"))})
@@ -162,7 +164,7 @@ def _numbers(values: Sequence[float | None]) -> Array:
     return np.array([math.nan if v is None else v for v in values], dtype=float)
 
 
-def _beside(rows: Sequence[Mapping[str, tuple[float, str]]], means: str) -> list[RawColumn]:
+def _extra_columns(rows: Sequence[Mapping[str, tuple[float, str]]], means: str) -> list[RawColumn]:
     """Columns of patches, or of what is no force."""
     first = {name: unit for row in reversed(rows) for name, (_, unit) in row.items()}
     names = dict.fromkeys(name for row in rows for name in row)

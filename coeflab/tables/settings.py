@@ -74,9 +74,9 @@ Settings = Mapping[str, Setting]
 
 
 def _sign(name: str) -> Callable[[Any], Any]:
-    def read(said: Any) -> str:
+    def read(value: Any) -> str:
         formulas = {"+" if sign > 0 else "-": formula for formula, sign in ANGLE_SIGNS[name].items()}
-        text = formulas.get(str(said), said)
+        text = formulas.get(str(value), value)
         angle_sign(name, text)
         return " ".join(str(text).split())
 
@@ -89,19 +89,19 @@ _WITH_UNIT = re.compile(rf"({_NUMBER.pattern})\s*([^\d\s.].*)")
 
 def _triple(read: Callable[[Any, Path], Any]) -> Callable[[Any], Any]:
     def parsed(typed: Any) -> Any:
-        said = list(typed) if isinstance(typed, tuple) else typed
-        if isinstance(said, str):
-            inner = said.strip(" []()")
+        value = list(typed) if isinstance(typed, tuple) else typed
+        if isinstance(value, str):
+            inner = value.strip(" []()")
             parts = inner.split("," if "," in inner else ";" if ";" in inner else None)
-            said = [typed_value(part) for part in _one_unit([part.strip(" \"'") for part in parts])]
+            value = [typed_value(part) for part in _one_unit([part.strip(" \"'") for part in parts])]
         try:
-            read(said, Path())
+            read(value, Path())
         except InputError as why:
             if not isinstance(typed, str):
                 raise
-            advice = "Write a decimal point." if len(said) > 3 and "." not in typed else why.advice
+            advice = "Write a decimal point." if len(value) > 3 and "." not in typed else why.advice
             raise type(why)(shown(typed), why.expected, advice=advice) from None
-        return said
+        return value
 
     return parsed
 
@@ -114,69 +114,69 @@ def _one_unit(parts: list[str]) -> list[str]:
     return parts
 
 
-def _place(said: Any) -> Any:
+def _place(value: Any) -> Any:
     """Three numbers, or x alone of a point on the axis: -2.1, -2.1 m, -2100 mm."""
-    if isinstance(said, (int, float)) and not isinstance(said, bool):
-        return _triple(POINT.read)([float(said), 0.0, 0.0])
-    if isinstance(said, str) and _ALONG.fullmatch(said.strip()):
-        return [quantity(said.strip(), "length"), 0.0, 0.0]
+    if isinstance(value, (int, float)) and not isinstance(value, bool):
+        return _triple(POINT.read)([float(value), 0.0, 0.0])
+    if isinstance(value, str) and _ALONG.fullmatch(value.strip()):
+        return [quantity(value.strip(), "length"), 0.0, 0.0]
     try:
-        return _triple(POINT.read)(said)
+        return _triple(POINT.read)(value)
     except InputError as why:
         raise type(why)(why.found, PLACE_WANTED, advice=why.advice) from None
 
 
-def _flag(said: Any) -> bool:
+def _flag(value: Any) -> bool:
     words = {"yes": True, "y": True, "true": True, "no": False, "n": False, "false": False}
-    found = said if isinstance(said, bool) else words.get(str(said).casefold())
+    found = value if isinstance(value, bool) else words.get(str(value).casefold())
     if found is None:
-        raise InputError(shown(said), "true or false")
+        raise InputError(shown(value), "true or false")
     return found
 
 
-def _half(said: Any) -> bool | str:
+def _half(value: Any) -> bool | str:
     words = {"yes": True, "no": False, "whole": False}
-    plain = said.strip().casefold() if isinstance(said, str) else said
+    plain = value.strip().casefold() if isinstance(value, str) else value
     return campaign.half_of_body(words.get(plain, plain) if isinstance(plain, str) else plain)
 
 
-def _listed(said: Any) -> Any:
-    return [word for part in said.split(",") if (word := part.strip(" \"'[]"))] if isinstance(said, str) else said
+def _listed(value: Any) -> Any:
+    return [word for part in value.split(",") if (word := part.strip(" \"'[]"))] if isinstance(value, str) else value
 
 
 def _measured(dimension: str) -> Callable[[Any], Any]:
-    def read(said: Any) -> Any:
-        if not with_unit(said, dimension) > 0.0:
-            raise InputError(shown(said), f"a {dimension} above zero")
-        return said
+    def read(value: Any) -> Any:
+        if not with_unit(value, dimension) > 0.0:
+            raise InputError(shown(value), f"a {dimension} above zero")
+        return value
 
     return read
 
 
 def _one_of(*words: str) -> Callable[[Any], Any]:
-    return lambda said: one_of(*words).read(said, Path())
+    return lambda value: one_of(*words).read(value, Path())
 
 
-def _area(said: Any) -> Any:
-    if str(said).casefold().rstrip("s") == "prime":
+def _area(value: Any) -> Any:
+    if str(value).casefold().rstrip("s") == "prime":
         return "prime"
-    return quantity(_measured("area")(said), "area")
+    return quantity(_measured("area")(value), "area")
 
 
-def _hull(said: Any) -> Any:
-    require_hull(said)
-    return _measured("length")(said)
+def _hull(value: Any) -> Any:
+    require_hull(value)
+    return _measured("length")(value)
 
 
 READERS: dict[str, Callable[[Any], Any]] = {
     "coefficients.area": _area,
-    "coefficients.length": lambda said: quantity(_measured("length")(said), "length"),
+    "coefficients.length": lambda value: quantity(_measured("length")(value), "length"),
     "columns.units": _one_of("SI", "US"),
-    "axes.frame": lambda said: parse_axes(said).declared,
+    "axes.frame": lambda value: parse_axes(value).declared,
     "axes.alpha": _sign("alpha"),
     "axes.beta": _sign("beta"),
     **dict.fromkeys(PLACE_KEYS, _place),
-    ARM_POINT: lambda said: REFERENCE if is_reference(said) else _place(said),
+    ARM_POINT: lambda value: REFERENCE if is_reference(value) else _place(value),
     "table.centre": _one_of(*campaign.CENTRES),
     "inertia.inertia": _triple(numbers(3, "inertia", "three numbers [Ix, Iy, Iz]").read),
     "inertia.mass": _measured("mass"),
@@ -185,12 +185,12 @@ READERS: dict[str, Callable[[Any], Any]] = {
     "conditions.speed": _measured("speed"),
     "table.contains_inertia": _flag,
     **dict.fromkeys((HALF_MODEL, "table.half_model"), _half),
-    SYMMETRY: lambda said: list(campaign.SYMMETRY_WORDS.read(_listed(said), Path())),
+    SYMMETRY: lambda value: list(campaign.SYMMETRY_WORDS.read(_listed(value), Path())),
     "source.kind": _one_of(*TABLE_KINDS),
-    "axes.datum": lambda said: datum_name(str(text_of(said, Path()))),
+    "axes.datum": lambda value: datum_name(str(text_of(value, Path()))),
     **dict.fromkeys(
         ("axes.datum_note", "scaling.length_name", "source.citation", "campaign.title", "campaign.body", "campaign.name"),
-        lambda said: str(text_of(said if isinstance(said, str) else json.dumps(said), Path())),
+        lambda value: str(text_of(value if isinstance(value, str) else json.dumps(value), Path())),
     ),
 }  # fmt: skip
 
@@ -214,7 +214,7 @@ def read_setting(key: str, text: Any) -> Any:
         else text
     )
     try:
-        return READERS.get(key, lambda said: said)(typed)
+        return READERS.get(key, lambda value: value)(typed)
     except OverflowError:
         raise input_error("tables.number_beyond_sizes", column=key, typed=shown(typed)) from None
     except InputError as why:
@@ -228,9 +228,12 @@ _NO_METRES = re.compile(
 _SIZED = re.compile(r"\s*([-+]?[\d.,]*\d(?:\s*(?:mm|cm|m|ft|in)\b)?)[\s,:]*(.*)")
 
 
-def is_reference(said: Any) -> bool:
+def is_reference(value: Any) -> bool:
     """Whether a person says that the point of the arm is the reference point."""
-    return isinstance(said, str) and " ".join(re.split(r"[\s_]+", said.strip().casefold())) in (REFERENCE, "reference")
+    return isinstance(value, str) and " ".join(re.split(r"[\s_]+", value.strip().casefold())) in (
+        REFERENCE,
+        "reference",
+    )
 
 
 def read_settings(key: str, text: str) -> dict[str, Any]:
@@ -272,10 +275,10 @@ def read_in(key: str, text: str) -> dict[str, Any]:
     }
 
 
-def of_datum(said: str, point: str) -> bool:
+def of_datum(value: str, point: str) -> bool:
     """Whether a datum that a person named is a point of the body by its plain name: midships is midship."""
-    found = of_the_test([("", f"reference point {said}")]).get("axes.datum")
-    return said.casefold() == point.casefold() or (found is not None and found.value == point)
+    found = of_the_test([("", f"reference point {value}")]).get("axes.datum")
+    return value.casefold() == point.casefold() or (found is not None and found.value == point)
 
 
 def require_one_datum(known: Settings, read: Mapping[str, Any]) -> None:
@@ -306,8 +309,8 @@ def _place_and_datum(typed: str, key: str) -> tuple[str, str]:
     words = [w for w in re.split(r"[\s,;:@()]+", rest) if w]
     if numbers and (sided := {w.casefold() for w in words} & vocabulary().lists["sided"]):
         raise input_error("tables.side_as_a_word", column=key, typed=shown(typed), pop=sided.pop())
-    beside = (typed[: numbers.start()], typed[numbers.end() :]) if numbers else ()
-    if any(_NO_METRES.search(part) for part in beside) or re.search("['\"′″]", at):
+    around = (typed[: numbers.start()], typed[numbers.end() :]) if numbers else ()
+    if any(_NO_METRES.search(part) for part in around) or re.search("['\"′″]", at):
         raise input_error("tables.place_in_another_unit", column=key, typed=shown(typed), place_wanted=PLACE_WANTED)
     if "/" in rest or (not numbers and len(words) > 2):
         raise input_error("tables.no_place", column=key, typed=shown(typed), place_wanted=PLACE_WANTED)
@@ -354,20 +357,20 @@ def saved_mapping(path: Path) -> tuple[dict[str, ColumnMap], dict[str, Setting],
             complaints.append(InputError(why.found, why.expected, file=path, line=line, key=f"columns.{name}"))
     importer = ""
     each = content.pop(EACH, {})
-    for key, said in each.items() if isinstance(each, dict) else ():
+    for key, value in each.items() if isinstance(each, dict) else ():
         try:
-            settings[key] = Setting(read_setting(key.rpartition("/")[2], said), f"from {path.name}")
+            settings[key] = Setting(read_setting(key.rpartition("/")[2], value), f"from {path.name}")
         except InputError as why:
             complaints.append(file.fail(EACH, why.found, why.expected, why.advice))
     for section, inner in content.items():
         keys = inner[0] if isinstance(inner, list) and inner else inner
-        for name, said in keys.items() if isinstance(keys, dict) else {section: keys}.items():
+        for name, value in keys.items() if isinstance(keys, dict) else {section: keys}.items():
             key = f"{section}.{name}"
             if key == "campaign.importer":
-                importer = str(said)
+                importer = str(value)
             elif key not in RESERVED and section != "campaign":
                 try:
-                    settings[key] = Setting(read_setting(key, said), f"from {path.name}")
+                    settings[key] = Setting(read_setting(key, value), f"from {path.name}")
                 except InputError as why:
                     complaints.append(file.fail(key, why.found, why.expected, why.advice))
     if complaints:

@@ -87,19 +87,19 @@ ADVICE = {
 BY_WORDS = ("axes.frame", "axes.alpha", "axes.beta", "table.contains_inertia")
 
 
-def _same(key: str, said: Any, stated: Any, settings: Settings) -> bool:
+def _same(key: str, value: Any, stated: Any, settings: Settings) -> bool:
     """Whether a person says of a key what the source states."""
     if key in SIZES or key in ("coefficients.area", "coefficients.length"):
         dimension = SIZES.get(key, key.rpartition(".")[2])
-        return said != "prime" and abs(quantity(said, dimension) / float(stated) - 1.0) <= SAME_SIZE
+        return value != "prime" and abs(quantity(value, dimension) / float(stated) - 1.0) <= SAME_SIZE
     if key == ARM_POINT and stated == REFERENCE:
         about = settings.get(POINT_OF)
-        return said == REFERENCE or (about is not None and bool(np.allclose(said, about.value, rtol=0.0, atol=1e-9)))
+        return value == REFERENCE or (about is not None and bool(np.allclose(value, about.value, rtol=0.0, atol=1e-9)))
     if key == "axes.frame":
-        return bool(np.array_equal(parse_axes(said).rotation, parse_axes(read_setting(key, stated)).rotation))
+        return bool(np.array_equal(parse_axes(value).rotation, parse_axes(read_setting(key, stated)).rotation))
     if isinstance(stated, tuple):
-        return bool(np.allclose(np.asarray(said, dtype=float), stated, rtol=SAME_SIZE, atol=1e-9))
-    return str(said).casefold() == str(stated).casefold()
+        return bool(np.allclose(np.asarray(value, dtype=float), stated, rtol=SAME_SIZE, atol=1e-9))
+    return str(value).casefold() == str(stated).casefold()
 
 
 def against_words(raw: RawTable, settings: Settings) -> list[tuple[str, str, str]]:

@@ -64,14 +64,16 @@ def _half_by_drag(parts: Sequence[Part], founds: Sequence[Interpretation], setti
 
 def _straight_ahead(found: Interpretation) -> tuple[float, float]:
     """X in N where nothing else moves, and U there or NaN without such a column; NaN where no row is so."""
-    data = {c.said.plain: c for c in found.columns}
-    if "X" not in data or data["X"].said.pure or "R" in data:
+    data = {c.meaning.plain: c for c in found.columns}
+    if "X" not in data or data["X"].meaning.pure or "R" in data:
         return np.nan, np.nan
-    moves = [c.values for c in found.columns if c.said.role in ("angle", "velocity", "control") and c.said.name != "u"]
+    moves = [
+        c.values for c in found.columns if c.meaning.role in ("angle", "velocity", "control") and c.meaning.name != "u"
+    ]
     still = np.all([np.abs(np.nan_to_num(m)) <= 1e-9 for m in moves], axis=0) if moves else np.zeros(0, dtype=bool)
     if not np.any(still):
         return np.nan, np.nan
-    speed = next((data[n] for n in ("U", "u") if n in data and not data[n].said.primed), None)
+    speed = next((data[n] for n in ("U", "u") if n in data and not data[n].meaning.primed), None)
     return float(np.median(data["X"].values[still])), np.nan if speed is None else float(np.median(speed.values[still]))
 
 

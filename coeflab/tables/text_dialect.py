@@ -20,7 +20,7 @@ from coeflab.core.texts import input_error
 from coeflab.tables.dialect import (
     BLANKS,
     ERRORS,
-    SAID,
+    MARK_NAMES,
     SNIFFED,
     Head,
     Marks,
@@ -97,7 +97,7 @@ class TextDialect:
     numbers: tuple[int, ...]  # columns that hold numbers
     words: frozenset[int]  # columns that hold text
     decimals: int  # digits behind the mark in the last column, -1 where they differ
-    said: Mapping[str, str]
+    summary: Mapping[str, str]
     remarks: tuple[str, ...] = ()
     stated: Mapping[str, Stated] = field(default_factory=dict)
     above: tuple[str, ...] = ()  # lines over the head
@@ -253,16 +253,16 @@ def _hypotheses(text: str, options: Options) -> list[Marks]:
     return out
 
 
-def _delimiter(kept: list[tuple[int, str]], options: Options, path: Path) -> Found:
+def _delimiter(rows_read: list[tuple[int, str]], options: Options, path: Path) -> Found:
     """The delimiter, the rows that it makes and their longest run."""
-    text = "\n".join(line for _, line in kept)
+    text = "\n".join(line for _, line in rows_read)
     hypotheses = _hypotheses(text, options) or [Marks()]
     wanted = [DELIMITERS[options.delimiter]] if options.delimiter else DELIMITERS.values()
     found = []
     for delimiter in wanted:
         if delimiter and (delimiter not in text and not (delimiter == " " and "\t" in text)) and not options.delimiter:
             continue
-        rows = [(n, split_line(line, delimiter)) for n, line in kept]
+        rows = [(n, split_line(line, delimiter)) for n, line in rows_read]
         if delimiter.strip(" ") and (ragged := _ragged(rows, hypotheses[0])):
             rows = ragged
         run = max((_longest(rows, m) for m in hypotheses), key=lambda r: (r[1] - r[0]) * r[3])
@@ -290,14 +290,16 @@ def _is_head(rows: Sequence[list[str]], hypotheses: Sequence[Marks]) -> bool:
 
 
 def _readings(marks: Marks) -> str:
-    words = f"decimal {SAID[marks.decimal]}"
-    return f"{words} and {SAID[marks.thousands]} between thousands" if marks.thousands else words
+    words = f"decimal {MARK_NAMES[marks.decimal]}"
+    return f"{words} and {MARK_NAMES[marks.thousands]} between thousands" if marks.thousands else words
 
 
 def _which(one: Marks, other: Marks) -> str:
     """The options that decide between two readings."""
     words = [
-        f"decimal = {SAID[m.decimal]}" if one.decimal != other.decimal else f"thousands = {SAID[m.thousands]}"
+        f"decimal = {MARK_NAMES[m.decimal]}"
+        if one.decimal != other.decimal
+        else f"thousands = {MARK_NAMES[m.thousands]}"
         for m in (one, other)
     ]
     return f"Say the option {words[0]} or {words[1]}."
@@ -465,8 +467,8 @@ def sniff(path: Path, options: Options) -> TextDialect:
     )
     phrases = {
         "delimiter": next(name for name, d in DELIMITERS.items() if d == delimiter),
-        "decimal mark": SAID[marks.decimal],
-        "thousands mark": SAID[marks.thousands],
+        "decimal mark": MARK_NAMES[marks.decimal],
+        "thousands mark": MARK_NAMES[marks.thousands],
         "header": f"line {head.line}" if head.line else "none",
         "units": head.units_stand,
         "comments": " ".join(used) or "none",
@@ -495,10 +497,12 @@ def _above(lines: list[str], head: Head, delimiter: str, comments: tuple[str, ..
             yield n, [bare] if {"=", ":"} & set(bare) else split_line(bare, delimiter)
 
 
-def _single_column(lines: list[str], kept: list[tuple[int, str]], found: Found, options: Options, path: Path) -> Found:
+def _single_column(
+    lines: list[str], rows_read: list[tuple[int, str]], found: Found, options: Options, path: Path
+) -> Found:
     """Tell two columns of whole numbers from one column with decimal commas."""
     delimiter, rows, run = found
-    body = [line for n, line in kept if rows[run[0]][0] <= n <= rows[run[1] - 1][0]]
+    body = [line for n, line in rows_read if rows[run[0]][0] <= n <= rows[run[1] - 1][0]]
     if (
         delimiter != ","
         or run[2] != 2
@@ -511,7 +515,7 @@ def _single_column(lines: list[str], kept: list[tuple[int, str]], found: Found, 
     if "," in named or (options.decimal == "point" and named):
         return found
     if named and options.header >= 0:
-        single = [(n, split_line(line, "")) for n, line in kept]
+        single = [(n, split_line(line, "")) for n, line in rows_read]
         return "", single, _longest(single, Marks(","))
     line = rows[run[0]][0]
     raise AmbiguousError(
@@ -520,11 +524,11 @@ def _single_column(lines: list[str], kept: list[tuple[int, str]], found: Found, 
     )  # fmt: skip
 
 
-def _two_blanks(delimiter: str, marks: Marks, kept: list[tuple[int, str]], rows: Rows, path: Path) -> None:
+def _two_blanks(delimiter: str, marks: Marks, rows_read: list[tuple[int, str]], rows: Rows, path: Path) -> None:
     """Refuse tabs and blanks of which either may be the delimiter: "1 200<tab>5"."""
     if delimiter != "\t" or marks.thousands != " ":
         return
-    lines = dict(kept)
+    lines = dict(rows_read)
     split = [(n, split_line(lines[n], " ")) for n, _ in rows]
     widths = {len(c) for _, c in split}
     plain = Marks(marks.decimal)

@@ -300,7 +300,7 @@ def speed_of_rows(
 
 def _require_symmetry(columns: Columns, cut: Cut, forces: Mapping[str, Array], motion: Mapping[str, Array]) -> None:
     """Refuse what half of a body cannot measure."""
-    odd = [c for c in forces if c in cut.lost]
+    odd = [c for c in forces if c in cut.cancelled]
     moving = [m for m in cut.across if np.any(motion[m] != 0.0)]
     moving += [c for c in cut.controls if np.any(columns.controls.get(c, 0.0) != 0.0)]
     if odd or moving:

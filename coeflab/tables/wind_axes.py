@@ -90,10 +90,10 @@ def _wind_complaints(columns: Columns, own: Mapping[str, str]) -> Iterator[Input
     wind = [c for c in WIND if c in columns.forces]
     if "drag" not in wind:
         yield columns.fail("tables.wind_without_drag", name=wind[0], wind=" and ".join(wind))
-    for part, beside in (("X", "drag"), ("Z", "drag"), ("Y", "side")):
-        if own[part] in columns.forces and beside in wind:
+    for part, wind_part in (("X", "drag"), ("Z", "drag"), ("Y", "side")):
+        if own[part] in columns.forces and wind_part in wind:
             yield columns.fail(
-                "tables.wind_beside_body_axes", name=own[part], wind=" and ".join(wind), own=own[part], beside=beside
+                "tables.wind_beside_body_axes", name=own[part], wind=" and ".join(wind), own=own[part], beside=wind_part
             )
     moving = [c for c in LINEAR if c in columns.velocity]
     for force, angle in (("lift", "alpha"), ("side", "beta")):

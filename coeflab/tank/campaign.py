@@ -265,7 +265,7 @@ def _declared(
 
 def _campaign_text(
     tank: Tank, body: TowedBody, runs: Sequence[TowedRun], version: str, inputs: Mapping[str, Path],
-    declared: Sequence[str], turned: Sequence[str], made: str, kind: str,
+    declared: Sequence[str], turned: Sequence[str], origin: str, kind: str,
 ) -> str:  # fmt: skip
     finished = sum(r.counts for r in runs)
     stated = [*tank.by_symmetry, *(f"{t}.csv from {SOURCES[t]}.csv by fourfold symmetry" for t in turned)]
@@ -275,11 +275,11 @@ def _campaign_text(
         f"{version}, run by coeflab {VERSION}. Means over plateaus, se from batch means and range "
         "(iteration noise only). Half bodies are doubled. Runs: runs.csv." + (f" {files}." if files else "")
     )
-    if made:
-        how = f"As the table gives it: {made}, read by coeflab {VERSION}." + (f" {files}." if files else "")
+    if origin:
+        how = f"As the table gives it: {origin}, read by coeflab {VERSION}." + (f" {files}." if files else "")
     grids = {r.condition.grid for r in runs}
     errors = any(r.summary is not None and r.summary.errors for r in runs)
-    own = ("errors per point (se_) as the table states them; " if errors else "no errors stated; ") if made else ""
+    own = ("errors per point (se_) as the table states them; " if errors else "no errors stated; ") if origin else ""
     scatter = (own or "iteration noise per point (se_); ") + (
         f"grids {', '.join(g.name for g in tank.grids if g.name in grids)} for chosen conditions"
         if len(grids) > 1
@@ -288,7 +288,7 @@ def _campaign_text(
     sections: dict[str, dict[str, Any]] = {
         "campaign": {
             "name": tank.name, "title": tank.title, "body": body.body.name, "symmetry": list(tank.symmetry) or None,
-            "notes": " ".join([f"{finished} of {len(runs)} conditions {'given' if made else 'converged'}.", *(f"By symmetry: {s}." for s in stated)]),
+            "notes": " ".join([f"{finished} of {len(runs)} conditions {'given' if origin else 'converged'}.", *(f"By symmetry: {s}." for s in stated)]),
         },
         "axes": {
             "frame": "FRD", "datum": tank.datum.id, "datum_note": tank.datum.note or None,
@@ -300,7 +300,7 @@ def _campaign_text(
             "reynolds": at.reynolds_on(tank.scaling.length),
         },
         "source": {
-            "citation": f"{body.body.name}: {made}" if made else f"coeflab tow of {body.body.name}, {version}",
+            "citation": f"{body.body.name}: {origin}" if origin else f"coeflab tow of {body.body.name}, {version}",
             "kind": kind, "how_obtained": how,
             "stated_uncertainty": SMOOTH if kind == "estimate" else f"{scatter}; modelling error not assessed",
         },

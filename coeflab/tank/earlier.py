@@ -64,7 +64,7 @@ def take_over(campaign: Path, jobs: Sequence[Job]) -> tuple[str, ...]:
     rows = _rows(campaign)
     for job in jobs:
         words = found.get(job.name)
-        if words is None or progress(job).state.is_kept:
+        if words is None or progress(job).state.is_final:
             continue
         row = _content(words, rows.get(job.name, {}))
         history = campaign / HISTORIES / f"{job.name}.csv"
@@ -120,7 +120,7 @@ def earlier_run(condition: TowCondition, job: Job, state: JobState) -> TowedRun 
         The file in the job's folder is damaged.
     """
     path = job.folder / EARLIER
-    if not state.is_kept or not path.is_file():
+    if not state.is_final or not path.is_file():
         return None
     advice = "Delete it and state.json beside it: the condition is run anew."
     row = read_record(path, _ROW, "the row of an earlier tow", advice=advice, largest=JSON_BYTES)
@@ -152,7 +152,7 @@ def _ended(campaign: Path) -> dict[str, dict[str, str]]:
     try:
         rows = _read(io.StringIO(read_text(path, JSON_BYTES), newline=""))
         selected = {
-            r["condition"]: r for r in rows if JobState(r["state"]).is_kept and r["case sha256"] + r["mesh sha256"]
+            r["condition"]: r for r in rows if JobState(r["state"]).is_final and r["case sha256"] + r["mesh sha256"]
         }
     except (ValueError, KeyError, TypeError, csv.Error) as why:
         raise InputError(f"no table of runs ({shown(why)[1:-1]})", _OURS, file=path, column="--finished") from None
@@ -181,7 +181,7 @@ def _read(lines: Iterable[str]) -> list[dict[str, str]]:
     return [{plain(k): plain(v) if isinstance(v, str) else v for k, v in r.items() if k} for r in csv.DictReader(lines)]
 
 
-def _content(said: Mapping[str, str], row: Mapping[str, str]) -> dict[str, Any]:
+def _content(given: Mapping[str, str], row: Mapping[str, str]) -> dict[str, Any]:
     """What the campaign says of a condition: ``runs.csv`` and its row of the table, which is empty for a run without means."""
     means, errors, patches = {}, {}, {}
     for head, cell in row.items():
@@ -194,11 +194,11 @@ def _content(said: Mapping[str, str], row: Mapping[str, str]) -> dict[str, Any]:
             errors[found["name"]] = float(cell)
         else:
             means[found["name"]] = float(cell)
-    status = said["status"] if said["status"] in list(Convergence) else Convergence.DRIFTING
+    status = given["status"] if given["status"] in list(Convergence) else Convergence.DRIFTING
     return {
-        "why": said["why"] if said["state"] != JobState.FINISHED else "",
-        "summary_why": said["why"] if said["state"] == JobState.FINISHED else "",
-        "status": status, "means": means, "errors": errors, "patches": patches, "mesh": said["mesh sha256"],
+        "why": given["why"] if given["state"] != JobState.FINISHED else "",
+        "summary_why": given["why"] if given["state"] == JobState.FINISHED else "",
+        "status": status, "means": means, "errors": errors, "patches": patches, "mesh": given["mesh sha256"],
         "iterations": float(row["iterations"]) if row.get("iterations") else None, "cells": float(row.get("cells") or 0.0),
-        "remarks": [said["remarks"]] if said["remarks"] else [],
+        "remarks": [given["remarks"]] if given["remarks"] else [],
     }  # fmt: skip

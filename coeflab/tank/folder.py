@@ -88,12 +88,12 @@ def copied(matrix: Path, folder: Path) -> bytes:
         at = file.line(place)
         if not isinstance(named, str) or at is None or matrix.parent.resolve() == folder.resolve():
             continue
-        beside = (matrix.parent / named).resolve()
-        if not beside.exists() and (shipped(kind) / named).exists():
+        found = (matrix.parent / named).resolve()
+        if not found.exists() and (shipped(kind) / named).exists():
             continue  # the name of something shipped
         before, key, _ = lines[at - 1].partition(place[-1])
         if key and "=" in lines[at - 1]:
-            lines[at - 1] = f"{before}{key} = {quoted(Path(os.path.relpath(beside, folder.resolve())).as_posix())}"
+            lines[at - 1] = f"{before}{key} = {quoted(Path(os.path.relpath(found, folder.resolve())).as_posix())}"
     return "\n".join(lines).encode()
 
 

@@ -90,14 +90,14 @@ def carry_out(folder: Path, alone: bool = False) -> jobs.Progressed:
     job = jobs.read_job(folder)
     with jobs.only_one(job.folder, "job", jobs.PATIENCE) as lock:
         before = jobs.progress(job)
-        if before.state.is_kept:
+        if before.state.is_final:
             return before
         if before.state is jobs.JobState.RUNNING and not alone:
             raise InputError(f"a job that process {before.process} on {before.host} carries out", "one job at a time in a folder",
                              file=job.folder, advice="Wait for it, or end that process.")  # fmt: skip
         (job.folder / jobs.EARLIER).unlink(missing_ok=True)  # from now on the run is our own
         with asked_to_end() as asked:
-            return _Attempt(job, before, lock, asked).made()
+            return _Attempt(job, before, lock, asked).execute()
 
 
 @contextmanager
@@ -143,7 +143,7 @@ class _Attempt:
         self.killed = ""  # what is to be said of a solver that did not end by itself
         self.stopped = False
 
-    def made(self) -> jobs.Progressed:
+    def execute(self) -> jobs.Progressed:
         """Carry out the steps; whatever happens, no process of a step is left and the state says how it ended."""
         try:
             self._say()
@@ -187,7 +187,7 @@ class _Attempt:
     def _run(self, step: jobs.Step) -> int:
         """Run one step to its end; its exit code, negative for a signal."""
         log = self.job.folder / f"log.{step.name}"
-        _kept(log)
+        _move_aside(log)
         try:
             with log.open("wb") as stream:
                 process = subprocess.Popen(
@@ -381,7 +381,7 @@ def disk_is_full(folder: Path) -> bool:
     return shutil.disk_usage(folder).free < FULL
 
 
-def _kept(log: Path) -> None:
+def _move_aside(log: Path) -> None:
     """Move the log of an earlier attempt aside: log.simpleFoam.1 is the first."""
     if log.exists():
         number = 1

@@ -51,7 +51,7 @@ class JobState(StrEnum):
     CHANGED = "changed"  # finished with another mesh, case or solver: is run anew
 
     @property
-    def is_kept(self) -> bool:
+    def is_final(self) -> bool:
         """Whether the job is left as it is: carried out again, it would end the same."""
         return self in (JobState.FINISHED, JobState.UNCONVERGED, JobState.DIVERGED)
 
@@ -311,7 +311,7 @@ def outstanding(jobs: Sequence[Job]) -> tuple[Job, ...]:
     InputError
         A ``state.json`` is no state of a job.
     """
-    left = [job for job in jobs if not progress(job).state.is_kept]
+    left = [job for job in jobs if not progress(job).state.is_final]
     idle = idle_meshes(jobs, {job.name for job in left})
     return tuple(job for job in left if job.name not in idle)
 

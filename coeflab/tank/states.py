@@ -66,7 +66,7 @@ def rows_of(jobs: Sequence[Job]) -> tuple[JobRow, ...]:
         A state.json is none.
     """
     now = {job.name: progress(job) for job in jobs}
-    idle = idle_meshes(jobs, {name for name, found in now.items() if not found.state.is_kept})
+    idle = idle_meshes(jobs, {name for name, found in now.items() if not found.state.is_final})
     finished = [(job, now[job.name]) for job in jobs if now[job.name].state is JobState.FINISHED]
     paces = {runs: _pace(f for f in finished if bool(f[0].needs) is runs) for runs in (False, True)}
     return tuple(
@@ -87,7 +87,7 @@ def blocked_by(job: Job, now: dict[str, Progressed]) -> str:
 
 
 def _row(job: Job, found: Progressed, blocked: str, idle: bool, expected: float) -> JobRow:
-    if found.state.is_kept:
+    if found.state.is_final:
         return JobRow(job, found, 0.0)
     if idle and found.state is not JobState.RUNNING:
         return JobRow(job, replace(found, why="not needed: its runs are kept"), 0.0)

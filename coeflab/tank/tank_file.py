@@ -151,7 +151,7 @@ def _tank(file: TomlFile, body: TowedBody | None, body_file: Path | None, solver
                 advice='drift = ["2 deg", "4 deg"], or speeds = ["1 m/s"] for the resistance alone; a list left out gives its default.',
             )  # fmt: skip
         matrix = test_matrix.conditions(sweeps, towed, speed, scaling.length)
-        matrix = test_matrix.with_studies(matrix, [study.made for study in given.study])
+        matrix = test_matrix.with_studies(matrix, [study.built for study in given.study])
     except InputError as why:
         raise file.fail(why.column or "matrix", why.found, why.expected, why.advice) from None
     chosen, carried_by = solver or given.tank.solver, runner or given.tank.runner
@@ -190,20 +190,20 @@ def _where(file: TomlFile, named: Path | None, given: Path | None) -> Path:
     return one
 
 
-def _sweeps(said: MatrixKeys, body: TowedBody | None, length: float) -> Sweeps:
+def _sweeps(keys: MatrixKeys, body: TowedBody | None, length: float) -> Sweeps:
     default = test_matrix.default_sweeps(body, length)
     controls: dict[str, tuple[float, ...]] = {}
-    for one in said.control:
+    for one in keys.control:
         controls[one.symbol] = (*controls.get(one.symbol, ()), *one.angles)
     return Sweeps(
-        drift=default.drift if said.drift is None else said.drift,
-        attack=default.attack if said.attack is None else said.attack,
-        yaw=default.yaw if said.yaw is None else said.yaw,
-        pitch=said.pitch,
-        combined=tuple((c.drift, c.attack, c.yaw, c.pitch) for c in said.combined),
+        drift=default.drift if keys.drift is None else keys.drift,
+        attack=default.attack if keys.attack is None else keys.attack,
+        yaw=default.yaw if keys.yaw is None else keys.yaw,
+        pitch=keys.pitch,
+        combined=tuple((c.drift, c.attack, c.yaw, c.pitch) for c in keys.combined),
         controls=controls,
-        speeds=said.speeds,
-        pairs=said.pairs,
+        speeds=keys.speeds,
+        pairs=keys.pairs,
     )
 
 

@@ -44,7 +44,7 @@ def _no_name(name: str) -> str:
 Name = Annotated[takes.Text, takes.Within(_no_name, schema={"pattern": f"^{_NAME.pattern}$"})]
 
 
-def _quantities(dimension: str, words: str, largest: float, said: str) -> takes.Takes:
+def _quantities(dimension: str, words: str, largest: float, expected: str) -> takes.Takes:
     """A list of different numbers of one dimension, none beyond the largest."""
     schema = {"type": "array", "items": dict(takes.number_in(dimension).schema)}
 
@@ -54,7 +54,7 @@ def _quantities(dimension: str, words: str, largest: float, said: str) -> takes.
         numbers = tuple(with_unit(one, dimension) for one in given)
         for one, number in zip(given, numbers, strict=True):
             if abs(number) > largest:
-                raise InputError(shown(one), said)
+                raise InputError(shown(one), expected)
             if numbers.count(number) > 1:
                 raise InputError(f"{shown(one)} twice", words)
         return numbers
@@ -277,11 +277,11 @@ class StudyKeys(Declaration):
         """Conditions, and something to vary."""
         if not self.of:
             raise InputError("no condition", 'names of conditions such as ["drift+4"]', column="of")
-        if not self.made.values:
+        if not self.built.values:
             raise InputError("nothing to vary", "grid, domain, turbulence or iterations")
 
     @property
-    def made(self) -> Study:
+    def built(self) -> Study:
         """The study."""
         values = {
             "grid": self.grid,

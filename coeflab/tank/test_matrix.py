@@ -256,7 +256,7 @@ def conditions(sweeps: Sweeps, body: TowedBody | None, speed: float, length: flo
     """
     has = symmetries(body)
 
-    def made(
+    def condition(
         name: str, kind: Kind, angles: tuple[float, float] = (0.0, 0.0), turns: tuple[float, float] = (0.0, 0.0),
         controls: Mapping[str, float] | None = None, at: float = speed,
     ) -> TowCondition:  # fmt: skip
@@ -264,18 +264,18 @@ def conditions(sweeps: Sweeps, body: TowedBody | None, speed: float, length: flo
         rates = np.array([0.0, turns[1], turns[0]]) * at / length
         return TowCondition(name, kind, velocity, rates, controls or {}, half_of(velocity, rates, controls or {}, has))
 
-    swept = [made(f"drift{_degrees(a)}", Kind.DRIFT, (a, 0.0)) for a in sweeps.drift]
-    swept += [made(f"attack{_degrees(a)}", Kind.ATTACK, (0.0, a)) for a in sweeps.attack]
-    swept += [made(f"yaw{r:+.6g}", Kind.ARM, turns=(r, 0.0)) for r in sweeps.yaw]
-    swept += [made(f"pitch{q:+.6g}", Kind.ARM, turns=(0.0, q)) for q in sweeps.pitch]
-    straight = made("straight", Kind.STRAIGHT)
+    swept = [condition(f"drift{_degrees(a)}", Kind.DRIFT, (a, 0.0)) for a in sweeps.drift]
+    swept += [condition(f"attack{_degrees(a)}", Kind.ATTACK, (0.0, a)) for a in sweeps.attack]
+    swept += [condition(f"yaw{r:+.6g}", Kind.ARM, turns=(r, 0.0)) for r in sweeps.yaw]
+    swept += [condition(f"pitch{q:+.6g}", Kind.ARM, turns=(0.0, q)) for q in sweeps.pitch]
+    straight = condition("straight", Kind.STRAIGHT)
     halves = list(dict.fromkeys(c.half for c in swept)) or [straight.half]
     ahead = [replace(straight, half=halves[0])]
     ahead += [replace(straight, half=half, name=f"straight_{half.name.lower()}") for half in halves[1:]]
-    more = [made(_combined(*m), Kind.COMBINED, m[:2], m[2:]) for m in sweeps.combined]
+    more = [condition(_combined(*m), Kind.COMBINED, m[:2], m[2:]) for m in sweeps.combined]
     for name, angles in sweeps.controls.items():
-        more += [made(f"{name}{_degrees(a)}", Kind.CONTROL, controls={name: a}) for a in angles]
-    more += [replace(made(f"speed{v:+.6g}", Kind.STRAIGHT, at=v), half=halves[0]) for v in sweeps.speeds]
+        more += [condition(f"{name}{_degrees(a)}", Kind.CONTROL, controls={name: a}) for a in angles]
+    more += [replace(condition(f"speed{v:+.6g}", Kind.STRAIGHT, at=v), half=halves[0]) for v in sweeps.speeds]
     out = (*ahead, *swept, *more)
     _check(out, has)
     for name in sweeps.pairs:

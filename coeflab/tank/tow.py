@@ -114,7 +114,7 @@ class Tow:
 
 @brief
 @dataclass(frozen=True, slots=True)
-class Kept:
+class Reuse:
     """What an earlier start left of a job.
 
     Attributes
@@ -376,7 +376,7 @@ def opened(folder: Path) -> Tow:
     return Tow(folder.resolve(), tank, body, SOLVERS.load(tank.solver).installed(), jobs)
 
 
-def kept(tow: Tow, before: Mapping[str, Any] | None = None) -> tuple[Kept, ...]:
+def reuse(tow: Tow, before: Mapping[str, Any] | None = None) -> tuple[Reuse, ...]:
     """What happens to each job when the tow goes on: kept, gone on with, or run anew and why.
 
     Parameters
@@ -388,23 +388,23 @@ def kept(tow: Tow, before: Mapping[str, Any] | None = None) -> tuple[Kept, ...]:
     return tuple(_fate(tow, job, before) for job in tow.jobs)
 
 
-def _fate(tow: Tow, job: Job, before: Mapping[str, Any] | None) -> Kept:
+def _fate(tow: Tow, job: Job, before: Mapping[str, Any] | None) -> Reuse:
     now = progress(job)
     if now.state is JobState.WAITING:
-        return Kept(job.name, now.state, "to be run")
+        return Reuse(job.name, now.state, "to be run")
     if now.state is JobState.CHANGED:
-        return Kept(job.name, now.state, ANEW, _changed(tow, job, before))
+        return Reuse(job.name, now.state, ANEW, _changed(tow, job, before))
     if _may_go_on(job, now):
         what = f"goes on from iteration {now.iteration:.0f} to {job.iterations:.0f} at most"
-        return Kept(job.name, JobState.STOPPED, what, "more iterations are allowed")
-    if now.state.is_kept:
-        return Kept(job.name, now.state, f"kept, {now.state}")
+        return Reuse(job.name, JobState.STOPPED, what, "more iterations are allowed")
+    if now.state.is_final:
+        return Reuse(job.name, now.state, f"kept, {now.state}")
     why = "" if now.state is JobState.STOPPED else now.why
     if now.state is JobState.RUNNING or tow.solver.resumed is None:
-        return Kept(job.name, now.state, GOES_ON, why)
+        return Reuse(job.name, now.state, GOES_ON, why)
     with SOLVERS.guarded(tow.tank.solver):
         _, at = tow.solver.resumed(job)  # as the next attempt does first
-    return Kept(job.name, now.state, f"{GOES_ON}, iteration {at:.0f}" if at > 0.0 else BEGINS, why)
+    return Reuse(job.name, now.state, f"{GOES_ON}, iteration {at:.0f}" if at > 0.0 else BEGINS, why)
 
 
 def _may_go_on(job: Job, now: Progressed) -> bool:
@@ -558,7 +558,7 @@ def _history(tow: Tow, job: Job, now: Progressed) -> Run | None:
         with SOLVERS.guarded(tow.tank.solver):
             found = tow.solver.history(job.folder)
     except InputError:
-        if now.state.is_kept:
+        if now.state.is_final:
             raise
         return None
     return until(found, now.plateau) if now.plateau else found

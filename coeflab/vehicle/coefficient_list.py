@@ -88,7 +88,7 @@ def read_coefficient_list(path: Path, axes: str, options: Mapping[str, Any] | No
     return Listed(tuple(numbers), (*left, *(text.removesuffix(".") for text in raw.remarks)))
 
 
-def beside_sheet(file: ParameterFile, sheet: Listed, path: Path) -> ParameterFile:
+def with_sheet(file: ParameterFile, sheet: Listed, path: Path) -> ParameterFile:
     """A file of numbers of a sheet, with its sha256 and what of it is not taken."""
     notes = (
         *file.provenance.notes,

@@ -24,7 +24,7 @@ from coeflab.law.symbols import ANGULAR, COMPONENTS, CONTROLS, LINEAR, MOTIONS, 
 from coeflab.law.terms import Factor, Term, parse_suffix
 from coeflab.vehicle.inertia import water_inertia
 from coeflab.vehicle.law_at_points import law_at_points
-from coeflab.vehicle.sources import acts_in, beside, moved_by, name_of, steered, summed
+from coeflab.vehicle.sources import acts_in, still_known, moved_by, name_of, steered, summed
 
 if TYPE_CHECKING:
     from coeflab.core.types import Array
@@ -147,7 +147,7 @@ def motion_law(parameters: ParameterFile, tables: bool = False) -> tuple[ForceLa
     return ForceLaw(terms, _ideal(parameters, sources)), (*sources.findings, *found)
 
 
-def known_beside(
+def known_with_terms(
     parameters: ParameterFile, terms: Sequence[tuple[str, str, Term]]
 ) -> tuple[ForceLaw, tuple[Finding, ...]]:
     """The fitted tables of a file that stay known where terms of its force are found from data, and those that do not.
@@ -158,7 +158,7 @@ def known_beside(
     terms : sequence of (symbol, component, Term)
         To be found.
     """
-    sources = beside(parameters.models, [(s, c, moved_by(v for v, _, _ in t.factors)) for s, c, t in terms])
+    sources = still_known(parameters.models, [(s, c, moved_by(v for v, _, _ in t.factors)) for s, c, t in terms])
     fitted, found = _fitted(sources, parameters)
     return ForceLaw(fitted, np.zeros((6, 6, 6))), (*sources.findings, *found)
 

@@ -72,7 +72,7 @@ class Weighed:
     ----------
     body : Body
         With a configuration of its own name, which has volume, centre of buoyancy and mass.
-    said : tuple of str
+    statements : tuple of str
         Mass against displacement first, then what is assumed, one line each.
     assumed : tuple of str
         Which of ``mass``, ``centre`` and ``inertia`` nobody stated.
@@ -81,7 +81,7 @@ class Weighed:
     """
 
     body: Body
-    said: tuple[str, ...]
+    statements: tuple[str, ...]
     assumed: tuple[str, ...]
     at_rest: tuple[float, float] | None = None
 
@@ -173,7 +173,7 @@ def displaced_mass(body: Body, density: float) -> float:
 def floods(body: Body) -> bool:
     """Whether its file declares flooded rooms or ballast, so that mass and displacement may differ."""
     parts = body.mass_model.parts if body.mass_model is not None else ()
-    return any(p.flooded or "ballast" in p.made_of for p in parts)
+    return any(p.flooded or "ballast" in p.material for p in parts)
 
 
 def _refuse_absurd(body: Body, mass: float, displaced: float, density: float) -> None:

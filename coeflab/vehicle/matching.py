@@ -87,8 +87,8 @@ def by_plain_names(found: CoefficientSet) -> tuple[CoefficientSet, dict[str, str
         return found, {n: n for n in order}
     fold = np.array([[1.0 if n == wanted else 0.0 for n in names] for wanted in order])
     covariance = fold @ np.nan_to_num(found.covariance) @ fold.T
-    lost = fold @ np.isnan(np.diag(found.covariance)) > 0.0
-    covariance[lost, :] = covariance[:, lost] = np.nan
+    undetermined = fold @ np.isnan(np.diag(found.covariance)) > 0.0
+    covariance[undetermined, :] = covariance[:, undetermined] = np.nan
     out = []
     first: dict[str, str] = {}
     for i, wanted in enumerate(order):
@@ -99,7 +99,7 @@ def by_plain_names(found: CoefficientSet) -> tuple[CoefficientSet, dict[str, str
             continue
         values = [c.value for c in mine]
         value = None if any(v is None for v in values) else float(sum(v for v in values if v is not None))
-        u95 = None if lost[i] or value is None else float(2.0 * np.sqrt(max(covariance[i, i], 0.0)))
+        u95 = None if undetermined[i] or value is None else float(2.0 * np.sqrt(max(covariance[i, i], 0.0)))
         weakest = min(mine, key=lambda c: (c.value is not None, c.status is not Status.ESTIMATE, c.u95 is not None))
         table, campaign = (_together(c.table for c in mine), _together(c.campaign for c in mine))
         out.append(replace(weakest, symbol=wanted, value=value, u95=u95, parts=Parts(), table=table, campaign=campaign))

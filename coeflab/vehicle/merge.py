@@ -126,15 +126,15 @@ def merged(
     many = len(theirs.coefficients)
     covariance = _blocks(joint.sets[0], ours, joint.covariance[:many, many:])
     theirs = spelled_as(joint.sets[0], first, slopes_of_ours)
-    lost = _stay(left_out(joint, (other.name, base.name), (shift, shift), Severity.FAIL)[0], other.findings, ours)
+    removed = _stay(left_out(joint, (other.name, base.name), (shift, shift), Severity.FAIL)[0], other.findings, ours)
     taken = {
         c.symbol: i
         for i, c in enumerate(theirs.coefficients)
         if c.value is not None and c.status is not Status.ESTIMATE
     }
-    if not taken and lost:
-        told = words(lost[0])
-        raise InputError(told.statement.rstrip("."), "what the move takes, in the same fit", advice=told.advice)
+    if not taken and removed:
+        text = words(removed[0])
+        raise InputError(text.statement.rstrip("."), "what the move takes, in the same fit", advice=text.advice)
     _refuse_other_tables(other, base)
     if not taken and not other.models:
         has = "estimates only" if any(c.status is Status.ESTIMATE for c in theirs.coefficients) else _nothing(other)
@@ -171,7 +171,7 @@ def merged(
     sums = sums_in_words(coefficient_set(other), other.name, {plain_name(s) for s in taken})
     scaled = _scaled(base, other, own or other.scaling)
     notes = (*result.provenance.notes, *sums, *([lengths] if lengths else []))
-    findings = (*(f for f in result.findings if f.code != LEFT_OUT), *lost, *scaled)
+    findings = (*(f for f in result.findings if f.code != LEFT_OUT), *removed, *scaled)
     update = {
         "findings": findings,
         "law_at_points": points_of(result),
@@ -212,10 +212,10 @@ def _blocks(theirs: CoefficientSet, ours: CoefficientSet, between: np.ndarray | 
     return np.block([[theirs.covariance, cross], [cross.T, ours.covariance]])
 
 
-def _stay(lost: Sequence[Finding], before: Sequence[Finding], ours: CoefficientSet) -> list[Finding]:
+def _stay(removed: Sequence[Finding], before: Sequence[Finding], ours: CoefficientSet) -> list[Finding]:
     """What was not moved, by this merge or by the fits before it, and what of the base stays in the place of it."""
     out = []
-    for f in (*lost, *(f for f in before if f.code == LEFT_OUT)):
+    for f in (*removed, *(f for f in before if f.code == LEFT_OUT)):
         named = {s.removesuffix("'") for s in f["symbols"]}
         stays = tuple(
             primed(c.symbol) for c in ours.coefficients if plain_name(c.symbol) in named and c.value is not None
@@ -278,38 +278,38 @@ def _joined(
     return _written(base, other, [e[0] for e in entries], covariance, replaced, name)
 
 
-def _against_points(made: ParameterFile) -> tuple[str, ...]:
+def _against_points(file: ParameterFile) -> tuple[str, ...]:
     """Estimated terms of second or higher degree that take the law away from measured points, all of a table, component by component."""
     out: list[str] = []
-    now = _rms(made)
-    for table in made.measured:
+    now = _rms(file)
+    for table in file.measured:
         moves = {m.name for m in table.motion}
         for component in dict.fromkeys(f.component for f in table.forces):
             mine = [
-                c for c in estimates_of(made)
+                c for c in estimates_of(file)
                 if (place := _place(c.symbol)) is not None and place[0] == component and place[1] <= moves
             ]  # fmt: skip
             if not mine or (component, table.table) not in now:
                 continue
-            without = made.model_copy(update={"coefficients": tuple(c for c in made.coefficients if c not in mine)})
+            without = file.model_copy(update={"coefficients": tuple(c for c in file.coefficients if c not in mine)})
             then = _rms(without)
             if then[component, table.table] < now[component, table.table]:
                 out += [c.symbol.removesuffix("'") for c in mine]
     return tuple(dict.fromkeys(out))
 
 
-def _held(made: ParameterFile) -> ParameterFile:
+def _held(file: ParameterFile) -> ParameterFile:
     """The file with the ranges in which its law, which is neither file's, meets its points."""
-    if not made.law_holds:
-        return made
-    length = made.scaling.length
-    cap = caps(made.measured, full_force(made), length, spoken(made).beyond_slopes)
-    return made.model_copy(update={"law_holds": held_ranges(made.measured, cap, length)})
+    if not file.law_holds:
+        return file
+    length = file.scaling.length
+    cap = caps(file.measured, full_force(file), length, spoken(file).beyond_slopes)
+    return file.model_copy(update={"law_holds": held_ranges(file.measured, cap, length)})
 
 
-def _rms(made: ParameterFile) -> dict[tuple[str, str], float]:
+def _rms(file: ParameterFile) -> dict[tuple[str, str], float]:
     """Of what the law misses at every point, also where it is not said to hold, by component and table."""
-    found = law_at_points(made.measured, (), force_at_edges(made), made.scaling.length)
+    found = law_at_points(file.measured, (), force_at_edges(file), file.scaling.length)
     return {(p.component, p.table): p.rms for p in found}
 
 
@@ -331,7 +331,7 @@ def _written(
     base: ParameterFile, other: ParameterFile, chosen: Sequence[Coefficient], covariance: np.ndarray,
     replaced: Sequence[Replaced], name: str,
 ) -> ParameterFile:  # fmt: skip
-    other, lost = _about(other, base)
+    other, removed = _about(other, base)
     at, hull = base.conditions, base.added_mass or other.added_mass
     rows = []
     for c in chosen:
@@ -351,7 +351,7 @@ def _written(
             if r.after is None and r.before and (r.before.status is Status.ESTIMATE) is estimated
         ]
         notes += [f"{what} left out beside the law of {other.name}: {', '.join(gone)}"] if gone else []
-    notes += [lost] if lost and base.mass is None else []
+    notes += [removed] if removed and base.mass is None else []
     same = np.allclose(base.reference_point.point, other.reference_point.point) and np.isclose(
         other.conditions.density, at.density
     )
@@ -409,12 +409,12 @@ def _about(other: ParameterFile, base: ParameterFile) -> tuple[ParameterFile, st
         "hydrostatics": afloat,
         "thrusters": tuple(t.model_copy(update={"position": _from(t.position, shift)}) for t in other.thrusters),
     }
-    lost = (
+    removed = (
         f"mass properties of {other.name} left out: about a point off its x axis they take cg and the inertia matrix"
         if mass is None and other.mass is not None
         else ""
     )
-    return other.model_copy(update=update), lost
+    return other.model_copy(update=update), removed
 
 
 def _from(point: Sequence[float], shift: np.ndarray) -> tuple[float, ...]:

@@ -227,7 +227,7 @@ def imported_file(
     )  # fmt: skip
 
 
-def stated_beside(base: ParameterFile, numbers: Sequence[OwnNumber]) -> ParameterFile:
+def as_file(base: ParameterFile, numbers: Sequence[OwnNumber]) -> ParameterFile:
     """The numbers as a file of the base's length, conditions and reference point, to be merged into it."""
     at = base.reference_point
     result = imported_file(BY_HAND, base.body, base.scaling, base.conditions, np.array(at.point), at.origin, numbers)
@@ -423,4 +423,4 @@ def typed_thruster(text: str, conditions: Conditions) -> ParameterThruster:
         raise InputError(
             why.found, why.expected, column=f"--thruster {why.column or ''}".strip(), advice=why.advice
         ) from None
-    return parameter_thruster(stated.made, np.zeros(3), conditions)
+    return parameter_thruster(stated.built, np.zeros(3), conditions)

@@ -251,13 +251,13 @@ class ParameterFile(Strict):
         strange = too_new(self, self.schema_version)
         if strange:
             raise ValueError(strange)
-        wrong = [*self._told_twice(), *self._disagreements()]
+        wrong = [*self._no_duplicates(), *self._disagreements()]
         if wrong:
             first, *others = wrong
             raise RefusedError(first.found, first.expected, first.advice, first.where, tuple(others))
         return self
 
-    def _told_twice(self) -> Iterator[RefusedError]:
+    def _no_duplicates(self) -> Iterator[RefusedError]:
         """What stands twice, and a covariance of what does not stand at all."""
         symbols = [c.symbol for c in self.coefficients]
         named = [t.name for t in self.thrusters] + [c.control for c in self.surfaces]
@@ -368,7 +368,7 @@ def schema() -> bytes:
 
 
 @contextmanager
-def refusals_told(place: str) -> Iterator[None]:
+def located_refusals(place: str) -> Iterator[None]:
     """What the models refuse while a file is put together, as one error.
 
     Parameters

@@ -92,8 +92,8 @@ def _adapter() -> TypeAdapter[Coefficient]:
 def _sorted(every: Sequence[Any]) -> list[Any]:
     """An unknown key before a key that is missing beside it, which may be the same misspelt."""
     unknown = {e["loc"][:-1] for e in every if e["type"] == "extra_forbidden"}
-    beside = [e for e in every if e["type"] == "missing" and e["loc"][:-1] in unknown]
-    return [e for e in every if e not in beside] + beside
+    missing_keys = [e for e in every if e["type"] == "missing" and e["loc"][:-1] in unknown]
+    return [e for e in every if e not in missing_keys] + missing_keys
 
 
 def _refusals(every: Sequence[Any], content: Any, schema: bytes) -> Iterator[tuple[Place, RefusedError]]:

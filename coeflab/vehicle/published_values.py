@@ -177,7 +177,7 @@ def compare(
     coefficients: tuple[Coefficient, ...],
     references: tuple[Reference, ...],
     scaling: Scaling,
-    beside: tuple[Reference, ...] | None = None,
+    known_references: tuple[Reference, ...] | None = None,
 ) -> tuple[Comparison, ...]:
     """Hold every coefficient against the published values that have its symbol and belong beside it.
 
@@ -189,7 +189,7 @@ def compare(
         for r in references:
             if r.relation is Relation.RE_ANALYSIS and c.campaign not in r.campaigns:
                 continue
-            if r.relation is not Relation.RE_ANALYSIS and not _beside(c, r, beside or references):
+            if r.relation is not Relation.RE_ANALYSIS and not _is_of_body(c, r, known_references or references):
                 continue
             for reading, published in r.readings(c.symbol, scaling):
                 difference = None if c.value is None else c.value - published
@@ -207,7 +207,7 @@ def _combined(u95: float, published: float, stated: float | None) -> float | Non
     return None if stated is None else float(np.hypot(u95, stated * published))
 
 
-def _beside(c: Coefficient, r: Reference, references: tuple[Reference, ...]) -> bool:
+def _is_of_body(c: Coefficient, r: Reference, references: tuple[Reference, ...]) -> bool:
     """A cross-body column stands beside the body that the quoted experiment column is about."""
     quoted = {q.body for q in references if q.relation is Relation.QUOTED} or {r.body}
     return c.body in quoted
@@ -346,10 +346,10 @@ class ReferenceKeys(takes.Declaration):
                 raise InputError(shown(key), f"one of {', '.join(INFERRED)}", column=f"inferred.{key}")
         if self.relation == Relation.RE_ANALYSIS and not self.campaigns:
             raise input_error("vehicle.re_analysis_without_campaigns", column="campaigns")
-        _ = self.made
+        _ = self.built
 
     @property
-    def made(self) -> Reference:
+    def built(self) -> Reference:
         """The column."""
         other, name = self.other_length, self.other_length_name
         return Reference(
@@ -396,4 +396,4 @@ def read_references(path: Path) -> tuple[Reference, ...]:
     InputError
         Everything that is wrong, by file, line and key.
     """
-    return tuple(r.made for r in takes.declared(ReferenceFile, read_toml(path)).reference)
+    return tuple(r.built for r in takes.declared(ReferenceFile, read_toml(path)).reference)

@@ -196,7 +196,7 @@ def summed(
     return Sources(tuple(selected), acting, tuple(dropped), out, tuple(found))
 
 
-def beside(models: Sequence[ParameterModel], terms: Sequence[tuple[str, str, Moved]]) -> Sources:
+def still_known(models: Sequence[ParameterModel], terms: Sequence[tuple[str, str, Moved]]) -> Sources:
     """The tables that stay known where terms are to be found from data: those that speak of nothing that a term speaks of.
 
     Parameters
@@ -263,10 +263,10 @@ def _of_wind(
     for s in standing:
         left = []
         for c in AXES:
-            made = s.turned(c)
-            if made is not None and (
-                any(axis == c and moved == made for axis, moved in along)
-                or any(other.place == c and other.speaks_of(made) for other in standing)
+            turned = s.turned(c)
+            if turned is not None and (
+                any(axis == c and moved == turned for axis, moved in along)
+                or any(other.place == c and other.speaks_of(turned) for other in standing)
             ):
                 left.append(c)
         one, two, three = (c not in left for c in AXES)
@@ -299,7 +299,7 @@ def _unused_terms(terms: Sequence[ForceTerm], s: TableSource) -> Finding:
 def _by_the_older_rule(
     terms: Sequence[ForceTerm],
     every: Sequence[TableSource],
-    kept: Sequence[ForceTerm],
+    selected: Sequence[ForceTerm],
     standing: Sequence[TableSource],
     version: str,
 ) -> list[Finding]:
@@ -307,7 +307,7 @@ def _by_the_older_rule(
     old = {t.component for t in terms if not t.variables or any(v not in CONTROLS for v in t.variables)}
     were = [s for s in every if not (set(AXES) if s.place in WIND else {s.place}) & old]
     changed = {s.component for s in every if (s in were) != (s in standing)}
-    changed |= {t.component for t in terms if t not in kept}
+    changed |= {t.component for t in terms if t not in selected}
     if not changed:
         return []
     names = [c for c in COMPONENTS if c in changed]

@@ -27,7 +27,7 @@ from coeflab.arm.thrusters import (
     Thruster,
     TorqueThruster,
     VoltageThruster,
-    lost_directions,
+    uncontrolled_directions,
     thrust_allocation,
     thruster_matrix,
 )
@@ -206,12 +206,12 @@ def test_thruster_matrix_says_what_it_loses() -> None:
     thrusters = puma().thrusters
     inverse = thrust_allocation(thrusters)
     np.testing.assert_allclose(thruster_matrix(thrusters) @ inverse, np.eye(6), atol=1e-12)
-    assert lost_directions(thruster_matrix(thrusters[:4])) == ("heave", "roll", "pitch")
+    assert uncontrolled_directions(thruster_matrix(thrusters[:4])) == ("heave", "roll", "pitch")
     with pytest.raises(InputError, match="no surge, no sway, no yaw"):
         thrust_allocation(thrusters[4:])
     aside = [Thruster("aside", np.array([0.5, 0.0, 0.0]), np.array([0.0, 1.0, 0.0]))]
-    assert "sway apart from yaw (N = 0.5 m Y)" in lost_directions(thruster_matrix(aside))
-    assert len(lost_directions(thruster_matrix([]))) == 6
+    assert "sway apart from yaw (N = 0.5 m Y)" in uncontrolled_directions(thruster_matrix(aside))
+    assert len(uncontrolled_directions(thruster_matrix([]))) == 6
 
 
 def test_shipped_phases() -> None:

@@ -168,8 +168,8 @@ def test_a_hull_of_revolution_with_parallel_middle_body_keeps_length_and_volume(
 def test_a_cone_is_a_revolution() -> None:
     found = likeness(Manifold.cylinder(3.0, 1.0, 0.0, 64))
     assert found.kind == "revolution"
-    assert found.made.radii == pytest.approx((0.0, 1.0), abs=2e-3)
-    assert found.made.volume == pytest.approx(np.pi, rel=5e-3)
+    assert found.built.radii == pytest.approx((0.0, 1.0), abs=2e-3)
+    assert found.built.volume == pytest.approx(np.pi, rel=5e-3)
 
 
 def test_a_long_box_is_a_bar_along_its_own_x() -> None:

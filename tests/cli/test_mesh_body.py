@@ -79,7 +79,7 @@ def test_large_meshes_are_announced_on_standard_error(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     """Those of 500,000 faces or more, which take 0.4 GB."""
-    assert mesh_file.WORTH_SAYING == 500_000
+    assert mesh_file.LARGE_MESH == 500_000
     assert mesh_file.memory_needed(522_240) == pytest.approx(0.3656e9, rel=1e-3)
     monkeypatch.setattr(mesh_file, "WORTH_SAYING", 3000)
     whole = trimesh.creation.uv_sphere(count=[32, 64])

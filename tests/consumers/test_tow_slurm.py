@@ -90,7 +90,7 @@ def test_rows_are_the_same_under_slurm_and_a_run_goes_on_when_its_node_is_back(
     for run in ("straight", "drift+4"):
         shutil.rmtree(tmp_path / "slurm" / run)
     tow = opened(tmp_path / "slurm", "slurm")
-    assert [kept.state for kept in room.kept(tow)] == [JobState.FINISHED, JobState.WAITING, JobState.WAITING]
+    assert [kept.state for kept in room.reuse(tow)] == [JobState.FINISHED, JobState.WAITING, JobState.WAITING]
 
     room.carried_out(tow, 0, Death(cluster, tow.folder / "drift+4").look)
     ours, theirs = rows(tow), rows(local)

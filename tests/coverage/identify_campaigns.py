@@ -102,7 +102,7 @@ def campaign(series: Sequence[MotionSeries], kind: Kind, component: str, seed: i
     kept: Sequence[int] = range(len(terms))
     swaps: dict[int, tuple[int, ...]] = {}
     if kind.chosen:
-        kept = identify(p, scaled_optimizer("stlsq"), seed=1, resamples=40).kept
+        kept = identify(p, scaled_optimizer("stlsq"), seed=1, resamples=40).retained
         swaps = exchangeable(p, kept)
     values, half = p.solved(kept), half_widths(p, kept)
     off: Array = np.array(

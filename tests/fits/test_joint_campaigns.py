@@ -252,7 +252,7 @@ def test_a_campaign_left_out_is_predicted_by_hand() -> None:
     shares = {s.campaign: s for s in pooling(result, "Y").shares}
     assert shares["b"].left_out.rms == pytest.approx(np.sqrt(np.mean(error**2)), rel=1e-6)
     assert shares["b"].left_out.largest == pytest.approx(np.abs(error).max(), rel=1e-6)
-    assert shares["b"].left_out.told
+    assert shares["b"].left_out.is_known
     assert shares["a"].left_out.predicted < shares["a"].left_out.rows  # nobody else turns
 
 

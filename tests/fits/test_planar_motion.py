@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from coeflab.core.errors import InputError
-from coeflab.fits.planar_motion import beside_steady
+from coeflab.fits.planar_motion import against_steady
 from coeflab.fits.statistics.harmonics import CUBIC, QUADRATIC, cycles_of, refined, regress
 from coeflab.fits.statistics.linear_model import t_factor
 from coeflab.law.coefficient import Status
@@ -250,11 +250,11 @@ def test_amplitude_explains_the_difference_to_the_steady_law() -> None:
     assert own.by_amplitude == pytest.approx(QUADRATIC * 0.2 * truth("Yv|v|"), rel=1e-4)
     assert own.difference == pytest.approx(own.by_amplitude, rel=1e-4)
     steady = replace(found, fit="slope_at_origin", campaign="steady", oscillations=())
-    (against,) = [e for e in beside_steady(found, (steady,)) if e.symbol == "Yv"]
+    (against,) = [e for e in against_steady(found, (steady,)) if e.symbol == "Yv"]
     assert against.against == "steady by slope_at_origin"
     assert against.by_amplitude == pytest.approx(own.by_amplitude, rel=1e-3)
     assert abs(against.rest[0]) <= 1e-3 * abs(against.difference)
-    assert beside_steady(found, (replace(steady, body="another"),)) == ()
+    assert against_steady(found, (replace(steady, body="another"),)) == ()
 
 
 def test_moved_to_another_point() -> None:

@@ -53,8 +53,8 @@ def test_without_noise_it_is_least_squares() -> None:
 @pytest.mark.parametrize("seed", [1, 2, 3])
 def test_the_planted_columns_are_kept(seed: int) -> None:
     found = identify(summed(*halves(0.05, seed)), scaled_optimizer("stlsq"), seed=seed, resamples=60)
-    assert found.kept == (0, 1, 3)
-    for j in found.kept:
+    assert found.retained == (0, 1, 3)
+    for j in found.retained:
         assert found.low[j] < found.coefficients[j] < found.high[j]
         assert found.coefficients[j] == pytest.approx(TRUE[j], abs=0.1)
     assert np.all(np.isnan(found.coefficients[[2, 4]]))
@@ -74,7 +74,7 @@ def test_units_of_columns_and_response_do_not_matter() -> None:
     first, second = halves(0.05)
     one = identify(summed(first, second), scaled_optimizer("stlsq"), seed=1, resamples=40)
     other = identify(summed(first * units, second * units), scaled_optimizer("stlsq"), seed=1, resamples=40)
-    assert one.kept == other.kept
+    assert one.retained == other.retained
     assert other.coefficients == pytest.approx(one.coefficients * units[-1] / units[:-1], rel=1e-6, nan_ok=True)
 
 
@@ -83,7 +83,7 @@ def test_too_few_stretches_give_no_interval() -> None:
     p = products(first, second, np.arange(ROWS) // 100)
     found = identify(p, scaled_optimizer("stlsq"), seed=1, resamples=40)
     assert np.all(np.isnan(found.low))
-    assert found.kept == (0, 1, 3)
+    assert found.retained == (0, 1, 3)
 
 
 def test_a_column_that_does_as_well_is_named() -> None:

@@ -14,7 +14,7 @@ from coeflab.core.files import shipped
 from coeflab.core.finding import Severity
 from coeflab.core.text.toml import read_toml
 from coeflab.fits.results.fit_result import Sweep
-from coeflab.formats.loss import lost_by_all
+from coeflab.formats.loss import common_losses
 from coeflab.law.scaling import Conditions, Scaling
 from coeflab.report.sections.conventions import conventions_section
 from coeflab.study.checks import data_gate, sizes, symmetry
@@ -126,7 +126,7 @@ def of_hull(folder: Path, hull: Path, campaign: str = "suboff_roddy_2", body: st
 def alarms(study: Study) -> tuple[list[str], list[str]]:
     """Findings, and what the parameter file itself says."""
     (file,) = study.parameter_files.values()
-    lost = [str(each) for each in lost_by_all(file, frozenset(), water_inertia(file)) if "another shape" in str(each)]
+    lost = [str(each) for each in common_losses(file, frozenset(), water_inertia(file)) if "another shape" in str(each)]
     notes = [n for n in file.provenance.notes if "another shape" in n]
     return [c.comment for c in study.checks if "another shape" in c.comment], lost + notes
 

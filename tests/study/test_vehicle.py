@@ -129,20 +129,20 @@ def test_a_body_alone_gives_a_parameter_file_of_estimates(steered: Study, tmp_pa
 )  # fmt: skip
 def test_the_mass_is_compared_with_the_displacement(bare: Body, mass: float | None, said: str) -> None:
     found = weighed(bare, Stated(mass), 998.2)
-    assert said in found.said[0]
+    assert said in found.statements[0]
     assert ("mass" in found.assumed) == (mass is None)
     assert {"centre", "inertia"} <= set(found.assumed)
 
 
 def test_what_makes_a_light_vehicle_neutral_is_said_where_its_file_states_no_masses(bare: Body) -> None:
-    light = weighed(bare, Stated(DISPLACED - 10.0), 998.2).said[0]
+    light = weighed(bare, Stated(DISPLACED - 10.0), 998.2).statements[0]
     assert "[[mass]] with ballast = true, or flooded = true" in light
     assert light.endswith("and without a stated mass it is neutral")
     for mass in (DISPLACED, DISPLACED + 20.0):
-        assert "[[mass]]" not in weighed(bare, Stated(mass), 998.2).said[0]
+        assert "[[mass]]" not in weighed(bare, Stated(mass), 998.2).statements[0]
     part = MassPart("dry", "point", 300.0, np.zeros(3), np.zeros((3, 3)))
     stated = replace(bare, mass_model=MassModel((part,), 998.2, DISPLACED / 998.2, np.zeros(3)))
-    said = weighed(stated, Stated(DISPLACED - 10.0), 998.2).said
+    said = weighed(stated, Stated(DISPLACED - 10.0), 998.2).statements
     assert "[[mass]]" not in said[0]
     assert said[1].startswith(f"the stated {DISPLACED - 10.0:.4g} kg stand in the place of the 300 kg of [[mass]]")
 
@@ -155,8 +155,8 @@ def test_a_centre_of_gravity_ahead_hangs_the_bow_down_and_is_warned_of(
     body = steered.shape.weighed.body
     middle = body.configurations[0].centre_of_buoyancy
     found = weighed(body, Stated(share * DISPLACED, middle + np.array([0.004, 0.0, 0.010])), 998.2)
-    assert "pitch -21.80 deg (bow down), roll 0 deg" in found.said[1]
-    assert ("ballasted to neutral at B" in found.said[1]) is ballasted
+    assert "pitch -21.80 deg (bow down), roll 0 deg" in found.statements[1]
+    assert ("ballasted to neutral at B" in found.statements[1]) is ballasted
     (said,) = (
         c
         for c in buoyancy.check(replace(steered, shape=replace(steered.shape, weighed=found)))
@@ -236,7 +236,7 @@ def test_an_inertia_that_no_body_has_is_refused(bare: Body) -> None:
 
 def test_without_control_and_thruster_it_coasts_and_says_what_is_missing(bare: Body) -> None:
     found = from_shape(PLAN, bare)
-    assert not any("drift" in s for s in found.shape.said)
+    assert not any("drift" in s for s in found.shape.statements)
     assert [m.manoeuvre.name for m in found.manoeuvres] == ["stop"]
     assert "coast-down" in {row[0] for row in manoeuvre_table(found.manoeuvres, ()).rows}
     missing = " ".join(found.shape.missing)
@@ -247,7 +247,7 @@ def test_without_control_and_thruster_it_coasts_and_says_what_is_missing(bare: B
 
 
 def test_added_mass_near_a_wall_goes_into_the_file(bare: Body, monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
-    few = partial(workbench_vehicle.beside_walls, given={"panels": 1000})
+    few = partial(workbench_vehicle.wall_sweep, given={"panels": 1000})
     monkeypatch.setattr(workbench_vehicle, "beside_walls", few)
     made = from_shape(PLAN, bare, wall="bottom", distances=(2.0, 0.5)).parameter_files
     write_all(tmp_path, parameter_files_rendered(made.values()))
@@ -517,7 +517,7 @@ def test_the_drift_from_which_the_law_pushes_ahead_is_said(bare: Body, monkeypat
     """X = -0.004 cos^2 + 0.02 sin^2 changes its sign at atan(sqrt(0.2)) = 24.1 deg."""
     monkeypatch.setitem(VALUES, "Xvv", 0.02)
     shape = from_shape(PLAN, bare).shape
-    assert any(s.startswith("limit: from 25 deg of drift") for s in shape.said)
+    assert any(s.startswith("limit: from 25 deg of drift") for s in shape.statements)
 
 
 def test_a_manoeuvre_beyond_what_estimates_hold_says_so(steered: Study) -> None:

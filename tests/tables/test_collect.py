@@ -584,7 +584,7 @@ def test_columns_that_the_format_does_not_name(tmp_path: Path) -> None:
     ]  # fmt: skip
     assert found.table.column("lateral").values == pytest.approx([6.0, 12.0], rel=1e-3)
     said = {"lateral": ColumnMap("Y", negative=True), "vertical": ColumnMap("ignore")}
-    known = {a.column.name: a.said for a in assigned(found.table, said)}
+    known = {a.column.name: a.meaning for a in assigned(found.table, said)}
     assert known["se_lateral"] == ColumnMap("Y", unit="N", error=True)
     assert "se_vertical" not in known
     write_run(tmp_path / "b6", {"X": 1.0})

@@ -298,7 +298,7 @@ def test_one_answer_says_which_of_two_units_in_a_head_the_numbers_are_in(
         c.name: read_column_map(p.text)
         for c, p in zip(raw.columns, proposals(raw, {"columns.units": system}), strict=True)
     }
-    found = {c.said.name: c.factor for c in assigned(raw, said)}
+    found = {c.meaning.name: c.factor for c in assigned(raw, said)}
     assert found["drag"] == pytest.approx(drag)
     assert found["M"] == pytest.approx(moment)
     assert sorted(found) == ["M", "alpha", "drag", "lift"]

@@ -15,7 +15,7 @@ from coeflab.bodies.readers import read_body
 from coeflab.core.files import shipped
 from coeflab.law.scaling import Conditions, Scaling
 from coeflab.tank.openfoam.mesh import mesh_job
-from coeflab.tank.openfoam.mesh_made import mesh_ended, mesh_made
+from coeflab.tank.openfoam.mesh_report import mesh_ended, mesh_report
 from coeflab.tank.openfoam.mesh_sizes import MeshKeys
 from coeflab.tank.tank import Grid, Tank
 from coeflab.tank.test_matrix import Half
@@ -81,7 +81,7 @@ def test_any_body_is_meshed_with_every_patch_whole(
         assert done.returncode == 0, (job.folder / f"log.{step.name}").read_text()[-2000:]
     remarks, why = mesh_ended(job)
     assert why == ""
-    found = mesh_made(job.folder)
+    found = mesh_report(job.folder)
     assert found.volume == pytest.approx(1.0, abs=0.02)
     for patch, share in found.surface.items():
         assert share == pytest.approx(1.0, abs=0.03), (patch, share, remarks)

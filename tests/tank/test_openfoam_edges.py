@@ -14,7 +14,7 @@ from coeflab.core.finding import Severity
 from coeflab.law.scaling import Conditions
 from coeflab.tank.openfoam.features import edges, features, foils, lies_in
 from coeflab.tank.openfoam.layers import THICKEST, boundary_layer, layers, wall_unit
-from coeflab.tank.openfoam.mesh_made import MeshMade, findings
+from coeflab.tank.openfoam.mesh_report import MeshReport, findings
 from coeflab.tank.openfoam.mesh_sizes import MeshKeys, mesh_sizes
 from coeflab.tank.openfoam.mirroring import images, mirrored_axes, sides
 from coeflab.tank.test_matrix import Half
@@ -141,7 +141,7 @@ def test_the_wake_of_a_sail_is_refined_to_the_tail() -> None:
 
 
 def test_what_is_found_of_a_mesh() -> None:
-    made = MeshMade(
+    made = MeshReport(
         9, {"hull": 0.94, "sail": 0.94}, {"hull": 1.0, "sail": 0.975}, 1.0, 60.0, 4.4,
         ("Max skewness = 4.38, 40 highly skew faces detected which may impair", "Concave cells found"),
     )  # fmt: skip

@@ -22,7 +22,7 @@ from coeflab.law.scaling import Conditions, Scaling
 from coeflab.tank.jobs import Job
 from coeflab.tank.openfoam.layers import FEWEST_ON_FOILS, GROWTH, layers, wall_unit
 from coeflab.tank.openfoam.mesh import mesh_job, mesh_name
-from coeflab.tank.openfoam.mesh_made import MADE, expected_cells, findings, mesh_ended, mesh_made
+from coeflab.tank.openfoam.mesh_report import MADE, expected_cells, findings, mesh_ended, mesh_report
 from coeflab.tank.openfoam.mesh_sizes import MeshKeys, mesh_sizes
 from coeflab.tank.tank import Grid, Tank
 from coeflab.tank.test_matrix import Half
@@ -230,14 +230,14 @@ def test_a_mesh_that_was_not_made_is_named(body: TowedBody, tmp_path: Path) -> N
     assert mesh_ended(made) == ((), "no mesh was made: log.checkMesh is missing")
     (made.folder / "log.checkMesh").write_text("cells: 9\n")
     assert mesh_ended(made)[1] == "no mesh was made: constant/polyMesh/boundary is missing"
-    assert mesh_made(made.folder) is None
+    assert mesh_report(made.folder) is None
     for name, content, found in (
         ("planned.json", '{"cells": 10}', "nothing"), ("planned.json", "[1]", "a list"), ("planned.json", '{"cells": "many"}', "many"),
         (MADE, '{"cells": 1.5}', "1.5"), (MADE, "{", "expected JSON"),
     ):  # fmt: skip
         (made.folder / name).write_text(content)
         with pytest.raises(InputError, match=name) as why:
-            mesh_made(made.folder) if name == MADE else expected_cells(made.folder)
+            mesh_report(made.folder) if name == MADE else expected_cells(made.folder)
         assert found in str(why.value)
         (made.folder / MADE).unlink(missing_ok=True)
 
@@ -266,7 +266,7 @@ def copy(mesh: Job, tmp_path: Path) -> Job:
 def test_it_is_sound_and_has_the_cells_expected(mesh: Job) -> None:
     before = json.loads((mesh.folder / "planned.json").read_text())["cells"]
     assert mesh_ended(mesh)[1] == ""
-    made = mesh_made(mesh.folder)
+    made = mesh_report(mesh.folder)
     assert made.cells == expected_cells(mesh.folder) == pytest.approx(before, rel=0.15)
     assert made.volume == pytest.approx(1.0, abs=0.01)
     assert set(made.surface) == {"hull", "rudder_upper"}  # the other rudder is below the cut
@@ -282,7 +282,7 @@ def test_few_layers_and_lost_patches_are_said(copy: Job) -> None:
     planned["surface"] |= {"sail": 0.1, "rudder_upper": planned["surface"]["rudder_upper"] * 1.5}
     (copy.folder / "planned.json").write_text(json.dumps(planned))
     remarks, why = mesh_ended(copy)
-    codes = [f.code for f in findings(mesh_made(copy.folder), planned)]  # type: ignore[arg-type]
+    codes = [f.code for f in findings(mesh_report(copy.folder), planned)]  # type: ignore[arg-type]
     assert codes[:3] == ["tow.layers", "tow.few_layers", "tow.surface"]
     assert len(remarks) == len(codes)
     assert why == "no cell lies on the patch sail: its cells are too large for its shape"

@@ -78,7 +78,7 @@ def towed(tow: Tow) -> Collected:
 
 
 def states(tow: Tow) -> dict[str, JobState]:
-    return {k.name: k.state for k in room.kept(tow)}
+    return {k.name: k.state for k in room.reuse(tow)}
 
 
 @pytest.fixture(scope="module")
@@ -265,12 +265,12 @@ def test_what_changed_is_named_and_run_anew(tmp_path: Path, monkeypatch: pytest.
     denser = (tmp_path / "tank.toml").read_text().replace("998.0", "1025.0")
     (tmp_path / "tank.toml").write_text(denser)
     again = laid_out(tmp_path, tmp_path / "tank.toml")
-    found = {k.name: k for k in room.kept(again, before)}
+    found = {k.name: k for k in room.reuse(again, before)}
     assert found["mesh/medium_upper"].what == "kept, finished"
     assert (found["drift+6"].what, found["drift+6"].why) == ("run anew", "its case changed")
     monkeypatch.setenv("PLANTED_VERSION", "planted 2")
     newer = laid_out(tmp_path, tmp_path / "tank.toml")
-    why = {k.why for k in room.kept(newer, before) if k.name != "straight"}
+    why = {k.why for k in room.reuse(newer, before) if k.name != "straight"}
     assert why == {"the solver was planted 1, now planted 2"}
 
 
@@ -279,7 +279,7 @@ def test_what_a_crashed_run_wrote_says_how_it_goes_on(tmp_path: Path, capsys: py
     room.carried_out(tow, 0, lambda: None)
     head = (tow.folder / "drift+3" / "history.csv").read_text().splitlines()
     (tow.folder / "drift+9" / "history.csv").write_text("\n".join(head[:48]) + "\n")
-    found = {k.name: k.what for k in room.kept(tow)}
+    found = {k.name: k.what for k in room.reuse(tow)}
     assert found["drift+6"] == "begins anew, as it had written nothing"
     assert found["drift+9"] == "goes on from what it wrote last, iteration 40"
     _fates(tow, None)

@@ -101,5 +101,5 @@ def test_a_body_toml_takes_it() -> None:
         ThrusterKeys,
         {"name": "m", "place": [0, 0, 0], "axis": [2, 0, 0], "bollard": "60 N", "rate": 720},
         Path("body.toml"),
-    ).made
+    ).built
     assert made.thrusts(1.0, 1000.0)[-1] == pytest.approx((720.0, 60.0))

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from coeflab.core.errors import InputError
-from coeflab.vehicle.coefficient_list import beside_sheet, read_coefficient_list
+from coeflab.vehicle.coefficient_list import with_sheet, read_coefficient_list
 from coeflab.vehicle.own_numbers import typed_file
 from tests.cli.test_import import invoke
 from tests.tables.test_excel import rows, workbook
@@ -97,7 +97,7 @@ def test_a_spreadsheet_becomes_a_parameter_file_with_its_hash_and_what_is_left(t
         read_coefficient_list(book, "FRD")
     found = read_coefficient_list(book, "FRD", {"sheet": "Model"})
     file = typed_file("mine", found.numbers, length="2.5 m", length_name="LOA", speed="1.5", density="1000", about="cg")
-    written = beside_sheet(file, found, book)
+    written = with_sheet(file, found, book)
     assert [c.value for c in written.coefficients] == pytest.approx([-25.5 / 4687.5, -8.0 / 29296.875])
     assert written.provenance.inputs[0].name == "book.xlsx"
 

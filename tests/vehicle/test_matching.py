@@ -16,7 +16,7 @@ from coeflab.motion.behaviour import behaviour
 from coeflab.vehicle.comparison import compare
 from coeflab.vehicle.matching import plain_name
 from coeflab.vehicle.merge import merged
-from coeflab.vehicle.own_numbers import own_numbers, stated_beside, typed_file
+from coeflab.vehicle.own_numbers import own_numbers, as_file, typed_file
 from coeflab.vehicle.parameter_file import ParameterFile, ParameterPoint
 
 YV, NV, YR, NR, X = -0.031, -0.012, 0.006, -0.0055, 0.07  # X: in lengths, ahead; all made up
@@ -86,7 +86,7 @@ def test_points_of_two_datums_are_placed_by_the_centre_of_gravity() -> None:
 
 def test_a_slope_five_per_cent_apart_is_seen() -> None:
     wrong = merged(
-        file("products", 0.3), stated_beside(file("products", 0.3), own_numbers(["Yuv'=-0.03255"])), alone=True
+        file("products", 0.3), as_file(file("products", 0.3), own_numbers(["Yuv'=-0.03255"])), alone=True
     ).parameters
     rows = {r.symbol: r for r in compare(file("plain", 0.0), wrong).rows}
     assert rows["Yv'"].difference == pytest.approx(0.05 * YV)

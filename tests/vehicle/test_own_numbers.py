@@ -20,7 +20,7 @@ from coeflab.law.scaling import Conditions, Scaling
 from coeflab.law.symbols import derivative
 from coeflab.vehicle.force_law import force_law
 from coeflab.vehicle.merge import merged
-from coeflab.vehicle.own_numbers import imported_file, mass_of, own_number, own_numbers, stated_beside, typed_file
+from coeflab.vehicle.own_numbers import imported_file, mass_of, own_number, own_numbers, as_file, typed_file
 from coeflab.vehicle.parameter_file import ParameterFile, read_parameter_file
 from coeflab.vehicle.plausibility import plausibility
 
@@ -247,7 +247,7 @@ def law(*numbers: str) -> ParameterFile:
 
 def test_one_number_is_replaced_in_its_place_and_no_other_with_it() -> None:
     base = law("Yv'=-0.03 +- 0.003", "Nv'=-0.012 +- 0.002", "Yv|v|'=-0.1", "Yvvv'=-0.2")
-    made = merged(base, stated_beside(base, own_numbers(["Yv|v|=-300 +- 20 N/(m/s)^2"])), alone=True)
+    made = merged(base, as_file(base, own_numbers(["Yv|v|=-300 +- 20 N/(m/s)^2"])), alone=True)
     values = {c.symbol: c.value for c in made.parameters.coefficients}
     assert values == pytest.approx({"Yv'": -0.03, "Nv'": -0.012, "Yv|v|'": -300.0 / 2000.0, "Yvvv'": -0.2})
     assert [r.symbol for r in made.replaced] == ["Yv|v|'"]
@@ -260,7 +260,7 @@ def test_one_number_is_replaced_in_its_place_and_no_other_with_it() -> None:
 
 def test_a_new_number_takes_the_place_of_the_terms_in_its_motions() -> None:
     base = law("Yv'=-0.03", "Yv|v|'=-0.1", "Yvvv'=-0.2", "Xu|u|'=-0.002")
-    made = merged(base, stated_beside(base, own_numbers(["X0'=-0.0025"])), alone=True)
+    made = merged(base, as_file(base, own_numbers(["X0'=-0.0025"])), alone=True)
     assert [c.symbol for c in made.parameters.coefficients] == ["Yv'", "Yv|v|'", "Yvvv'", "X0'"]
 
 

@@ -18,7 +18,7 @@ from coeflab.motion.simulators import rigid_body
 from coeflab.motion.trajectory import Ended
 from coeflab.motion.trim.trim import trim
 from coeflab.motion.vehicle import vehicle
-from coeflab.vehicle.force_law import force_law, full_force, known_beside, motion_law, not_used
+from coeflab.vehicle.force_law import force_law, full_force, known_with_terms, motion_law, not_used
 from coeflab.vehicle.parameter_file import ParameterFile
 from coeflab.vehicle.parameter_model import ParameterModel
 from tests.vehicle.hybrid import (
@@ -143,13 +143,13 @@ def test_a_table_of_one_component_stands_beside_coefficients_of_the_others() -> 
 def test_drag_alone_leaves_side_force_and_heave_to_body_axes_that_state_them() -> None:
     """-D sin(beta) is within a measured Yv; without one it is all that Y has."""
     lone = parameters({"Nr": -0.01}).model_copy(update={"models": (surface("C_D", DRAG),)})
-    beside = parameters({"Nr": -0.01, "Yv": -0.03}).model_copy(update={"models": (surface("C_D", DRAG),)})
+    still_known = parameters({"Nr": -0.01, "Yv": -0.03}).model_copy(update={"models": (surface("C_D", DRAG),)})
     b, q = np.arctan2(0.1, 1.0), 0.5 * RHO * 1.01 * AREA
     drag = q * (0.35 + 1.1 * b * b)
     assert force(lone, u=1.0, v=0.1)["Y"] == pytest.approx(-np.sin(b) * drag)
-    assert force(beside, u=1.0, v=0.1)["Y"] == pytest.approx(-0.03 * 0.5 * RHO * LENGTH**2 * np.sqrt(1.01) * 0.1)
-    assert force(beside, u=1.0, v=0.1)["X"] == pytest.approx(-np.cos(b) * drag)
-    assert [f.code for f in not_used(beside)] == ["law.wind_partly"]
+    assert force(still_known, u=1.0, v=0.1)["Y"] == pytest.approx(-0.03 * 0.5 * RHO * LENGTH**2 * np.sqrt(1.01) * 0.1)
+    assert force(still_known, u=1.0, v=0.1)["X"] == pytest.approx(-np.cos(b) * drag)
+    assert [f.code for f in not_used(still_known)] == ["law.wind_partly"]
 
 
 def control(response: str, over: str) -> ParameterModel:
@@ -263,15 +263,15 @@ def test_tables_stay_known_where_other_terms_are_to_be_found_from_data() -> None
     """Identification of Nr and Nr|r| knows C_n; that of Nv does not, and says so."""
     nu = np.array([[1.0, 0.1, 0.05, 0.0, 0.0, 0.3]])
     rates, slope = Term((("r", 1, False),)), Term((("v", 1, False),))
-    law, found = known_beside(hybrid(), [("Nr", "N", rates)])
+    law, found = known_with_terms(hybrid(), [("Nr", "N", rates)])
     assert [f.code for f in found] == ["law.edge"]
     whole = motion_law(hybrid())[0]
     tabled = [t.symbol for t in whole.terms if t.kind == "table"]
     assert [t.symbol for t in law.terms] == tabled
-    law, found = known_beside(hybrid(), [("Nr", "N", rates), ("Nv", "N", slope)])
+    law, found = known_with_terms(hybrid(), [("Nr", "N", rates), ("Nv", "N", slope)])
     assert [f["by"] for f in found if f.code == "law.table_unused"] == [("Nv'",)]
     assert law.force(nu)[0, 5] == 0.0
-    assert law.force(nu)[0, :5] == pytest.approx(known_beside(hybrid(), [("Nr", "N", rates)])[0].force(nu)[0, :5])
+    assert law.force(nu)[0, :5] == pytest.approx(known_with_terms(hybrid(), [("Nr", "N", rates)])[0].force(nu)[0, :5])
 
 
 def test_tuning_finds_planted_constants_of_a_table_and_of_a_rate_within_their_intervals(tmp_path: Path) -> None:

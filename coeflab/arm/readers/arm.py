@@ -189,4 +189,4 @@ def read(path: Path) -> Body:
     shape = file.shape
     title = "hull and links with the joints at home; overlaps count twice"
     home = Configuration("home", title, shape.volume, None, shape.centre_of_volume, file.mass)
-    return file.made(path, shape, (home,))
+    return file.build(path, shape, (home,))

@@ -255,7 +255,7 @@ def _thrusts(chain: Chain, drive: Drive, state: Array) -> Array:
 
 
 def _trajectory(
-    chain: Chain, manoeuvre: Manoeuvre, flow: Flow, rows: _Rows, ended: Ended, why: str, said: tuple[str, ...]
+    chain: Chain, manoeuvre: Manoeuvre, flow: Flow, rows: _Rows, ended: Ended, why: str, notes: tuple[str, ...]
 ) -> Trajectory:
     n, state = chain.count, rows.state
     q, rates, torques = state[:, 7 : 7 + n], state[:, 13 + n : 13 + 2 * n], rows.control[:, 6:]
@@ -304,5 +304,5 @@ def _trajectory(
         outside=outside,
         ended=ended,
         why=why,
-        statements=(*statements, *said),
+        statements=(*statements, *notes),
     )

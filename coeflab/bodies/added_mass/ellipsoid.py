@@ -95,7 +95,7 @@ exact_ellipsoids = 1
 
 EQUIVALENT = "equivalent ellipsoid: the body's length and volume, breadth over depth by its second moments"
 
-STANDS_IN = "Lamb's values of the ellipsoid that replaces the mesh"
+REPLACES_MESH = "Lamb's values of the ellipsoid that replaces the mesh"
 
 
 def _axes(shape: Shape) -> NDArray[np.float64]:
@@ -137,7 +137,7 @@ def added_mass(body: Body, density: float, options: Mapping[str, Any] | None = N
     axes, centre, turn, rough = _axes(shape), shape.centre_of_volume, np.eye(3), False
     if isinstance(shape, Parts) and len(shape.parts) == 1 and isinstance(shape.parts[0].form, Ellipsoid):
         axes, turn = shape.parts[0].form.axes, shape.parts[0].rotation
-        words = [STANDS_IN if shape.stand_ins else "the body is an ellipsoid: exact"]
+        words = [REPLACES_MESH if shape.stand_ins else "the body is an ellipsoid: exact"]
     else:
         misfit = ellipsoid_misfit(shape, axes)
         rough = misfit.rough

@@ -18,7 +18,7 @@ from coeflab.bodies.outline import RingWing
 from coeflab.bodies.panel_solver import influence
 from coeflab.bodies.panel_solver.refinement import Refinement, refined, volume_gap
 from coeflab.bodies.panel_solver.solve import PanelSolution, memory_needed, panel_added_mass
-from coeflab.bodies.panel_solver.wall import SAID, WALLS, Wall
+from coeflab.bodies.panel_solver.wall import WALL_NAMES, WALLS, Wall
 from coeflab.bodies.recognition import of_mesh
 from coeflab.bodies.shape import Part, Parts, Plate, Shape
 from coeflab.bodies.volume_moments import displaced
@@ -217,21 +217,23 @@ def _found(body: Body, shape: Shape, panelled: _Panelled, density: float, chosen
         short = gap.cost(found.matrix)
         if panelled.edges and isinstance(shape, TriangleMesh) and shape.remade is None:
             short = short + gap.hidden(found.matrix, found.used)
-        found, gaps = replace(found, error=found.error + short), (gap.said,)
+        found, gaps = replace(found, error=found.error + short), (gap.summary,)
     alike = _alike(shape, panelled, centre, wall, found.matrix)
     found = replace(found, matrix=alike.applied(found.matrix), error=alike.largest(found.error))
     judged, worst = _judged(found, len(panelled.meshes), chosen.extrapolate == "yes")
     fast = _compiled(chosen.kernel, len(closed[0]))
-    statements = (*_said(solutions, panelled, fast, thin), *gaps, *judged)
+    statements = (*_notes(solutions, panelled, fast, thin), *gaps, *judged)
     if wall is not None:
         near = wall.distance(panelled.finest.reshape(-1, 3))
         statements = (
-            f"near a wall: {SAID[chosen.wall]}, {chosen.distance:g} m from the reference point, {near:.3g} m from the body",
+            f"near a wall: {WALL_NAMES[chosen.wall]}, {chosen.distance:g} m from the reference point, {near:.3g} m from the body",
             *statements,
         )
     error = None if len(panelled.meshes) == 1 else density * found.error
-    lost = any(not s.converged for s in solutions)
-    own = AddedMass(density * found.settled, centre, body.datum, body.name, "panel", statements, error, rough=lost)
+    unconverged = any(not s.converged for s in solutions)
+    own = AddedMass(
+        density * found.settled, centre, body.datum, body.name, "panel", statements, error, rough=unconverged
+    )
     there = own.about(body.reference_point)
     matrix = alike.about(body.reference_point).applied((there.matrix + there.matrix.T) / 2.0)
     return replace(there, matrix=matrix), worst
@@ -263,7 +265,7 @@ def _panelled(shape: Shape, panels: int, chosen: Options) -> _Panelled:
         alone = _sheets(sheets, min(panels // 2, MOST_SHEETS), most)
         return _Panelled(tuple((np.zeros((0, 3, 3)), t) for t in alone), None, False)
     gated = solid if isinstance(solid, TriangleMesh) else meshed(solid, panels)
-    _gate(gated, made=gated is not solid)
+    _gate(gated, remeshed=gated is not solid)
     edges = influence.sharpness(gated.vertices, gated.faces) > SHARP
     if not len(sheets):
         closed = family(solid, panels, most)
@@ -318,10 +320,10 @@ def _within(sheets: Array, closed: Array) -> NDArray[np.bool_]:
     return np.asarray(influence.seen_by(sheets.mean(axis=1), influence.panels_of(closed))[0].sum(axis=1) > INSIDE)
 
 
-def _gate(mesh: TriangleMesh, made: bool) -> None:
+def _gate(mesh: TriangleMesh, remeshed: bool) -> None:
     """Refuse what the method cannot do; faces without area where parts that we meshed were united are just left out."""
     flat = int(np.count_nonzero(influence.slivers(mesh.vertices[mesh.faces])))
-    if flat and not made:
+    if flat and not remeshed:
         raise InputError(f"{flat} faces without area", "triangles", advice="Clean the mesh of degenerate faces.")
     torn = influence.unmatched_edges(mesh.faces)
     if torn:
@@ -373,7 +375,7 @@ def _fits(panels: int) -> None:
         )
 
 
-def _said(solutions: Sequence[PanelSolution], panelled: _Panelled, compiled: bool, thin: float) -> list[str]:
+def _notes(solutions: Sequence[PanelSolution], panelled: _Panelled, compiled: bool, thin: float) -> list[str]:
     counts = " and ".join(f"{s.count:,}" for s in solutions)
     kernel = "compiled (numba)" if compiled else "plain (numpy)"
     out = [
@@ -382,9 +384,11 @@ def _said(solutions: Sequence[PanelSolution], panelled: _Panelled, compiled: boo
     ]
     if panelled.sheeted:
         out.append(f"{panelled.sheeted:,} of them dipole panels of plates and sheets, without thickness")
-    lost = [s for s in solutions if not s.converged]
-    if lost:
-        out.append(f"NOT CONVERGED: {lost[0].count:,} panels left a residual of {lost[0].residual:.1e}; do not use it")
+    unconverged = [s for s in solutions if not s.converged]
+    if unconverged:
+        out.append(
+            f"NOT CONVERGED: {unconverged[0].count:,} panels left a residual of {unconverged[0].residual:.1e}; do not use it"
+        )
     if thin > 0.0:
         out.append(
             f"on {thin:.1%} of the surface the body is thinner than its panels are large: thin parts and sharp edges are less exact"

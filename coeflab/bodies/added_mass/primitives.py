@@ -41,7 +41,7 @@ from coeflab.core.options import one_of, parse_options
 from coeflab.core.types import locked
 from coeflab.law.added_mass import AddedMass, composed
 
-KEPT_FACES = 20_000
+SIMPLIFIED_FACES = 20_000
 SMOOTH, EDGED = 2.0, 4.0 / 3.0  # orders of the panel method, without and with right-angled edges
 
 
@@ -61,7 +61,7 @@ def like_one_plate(mesh: TriangleMesh) -> Part | None:
     if smallest > THIN * middle:
         return None
     try:
-        whole, _ = solids.simplified(solids.solid(mesh.vertices, mesh.faces), KEPT_FACES)
+        whole, _ = solids.simplified(solids.solid(mesh.vertices, mesh.faces), SIMPLIFIED_FACES)
     except ValueError:
         return None
     if len(solids.pieces(whole)) != 1:

@@ -73,8 +73,8 @@ class _Edges:
     ring: Index
     start: Index
 
-    def __getitem__(self, kept: slice | NDArray[np.bool_]) -> _Edges:
-        return _Edges(self.ends[kept], self.to[kept], self.lot[kept], self.ring, self.start)
+    def __getitem__(self, selected: slice | NDArray[np.bool_]) -> _Edges:
+        return _Edges(self.ends[selected], self.to[selected], self.lot[selected], self.ring, self.start)
 
 
 def _cheapest(vertices: Array, faces: Faces, names: Lots, share: float) -> tuple[Index, Array, Lots]:

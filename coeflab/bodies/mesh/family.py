@@ -26,7 +26,7 @@ RUNGS, LEAST_STEP = 28, 3
 LEAST, HIGHEST = 0.6, 1.1
 PRICE = 0.1  # of fewer panels at the top, in units of a ratio that is off by one e-fold
 MOST_UNFIT, MOST_SPLIT, CHANGE = 0.2, 40, 0.08
-MOST_THIN, KEPT = 0.02, 0.6  # of the area, from which panels are graded; of the panels, before that
+MOST_THIN, FIRST_SHARE = 0.02, 0.6  # of the area, from which panels are graded; of the panels, before that
 REMEMBERED = 4  # families; 0.6 MB each of 6,000 panels
 
 
@@ -109,7 +109,7 @@ def _of_mesh(mesh: TriangleMesh, panels: int, most: int) -> tuple[Array, ...]:
     finest = meshed(_split(mesh, panels), panels)
     if influence.thin_share(influence.panels_of(_corners(finest))) <= MOST_THIN:
         return _corners(finest), *_coarser(finest, most - 1)
-    finest = meshed(finest, max(int(KEPT * panels), FEWEST))
+    finest = meshed(finest, max(int(FIRST_SHARE * panels), FEWEST))
     return _graded((_corners(finest), *_coarser(finest, most - 1)), panels)
 
 

@@ -320,7 +320,7 @@ STEP_ANGLE = 0.1  # rad, largest turn from facet to facet of a curved face of a 
 
 BYTES_PER_FACE, BYTES_PER_LETTER = 700, 7
 SHARE_OF_MACHINE, UNKNOWN_MACHINE = 0.75, 8 << 30
-WORTH_SAYING = 500_000
+LARGE_MESH = 500_000
 
 log = logging.getLogger(__name__)
 
@@ -404,7 +404,7 @@ def load(path: Path) -> tuple[Array, NDArray[np.int64]]:
         See `faces_of`; or the file is damaged inside, or holds coordinates that are no numbers.
     """
     count = faces_of(path)
-    if count >= WORTH_SAYING:
+    if count >= LARGE_MESH:
         log.info("%s: %d faces, %s", path.name, count, _in_words(memory_needed(count, text_of(path, count))))
     stage(f"reading {count:,} faces of {path.name}")
     import trimesh

@@ -391,6 +391,6 @@ def _united(vertices: Array, faces: Faces, shell: Labels, count: int, file: Path
     return surface(Manifold.batch_boolean(result, OpType.Add).simplify(0.0))
 
 
-def _say(said: list[str], count: int, what: str) -> None:
+def _say(found: list[str], count: int, what: str) -> None:
     if count:
-        said.append(f"{count} {what}")
+        found.append(f"{count} {what}")

@@ -83,7 +83,7 @@ class VolumeGap:
         return np.asarray(STRONGEST * abs(self.step) / carried * np.outer(root, root))
 
     @property
-    def said(self) -> str:
+    def summary(self) -> str:
         """The same in words."""
         out = f"volume of the finest panels {self.finest:+.2%} from {self.body}"
         if self.meshes == 1:

@@ -9,7 +9,7 @@ import numpy as np
 from coeflab.core.types import Array
 
 WALLS = {"bottom": (1.0, 1.0), "surface_zero": (-1.0, 1.0), "surface_infinite": (-1.0, -1.0)}
-SAID = {
+WALL_NAMES = {
     "bottom": "a flat bottom below",
     "surface_zero": "a free surface above at zero frequency, a lid",
     "surface_infinite": "a free surface above at infinite frequency, where the potential is zero",

@@ -240,7 +240,7 @@ class Planform(takes.Declaration):
         span = (self.tip - self.root) * (1.0 + _is_mirrored(self))
         return Piece(self.name, self.name, partial(_solid, self), 2.05 * self.chord * span, self.chord)
 
-    def stands_on(self, hull: Sections) -> None:
+    def check_hull(self, hull: Sections) -> None:
         """Refuse what does not stand on a hull.
 
         Raises
@@ -490,7 +490,7 @@ class File(ShapedBodyFile):
             hull = self.hull.sections
             for key, part in placed:
                 try:
-                    part.clears(hull) if isinstance(part, DuctKeys) else part.stands_on(hull)
+                    part.clears(hull) if isinstance(part, DuctKeys) else part.check_hull(hull)
                 except InputError as why:
                     raise InputError(why.found, why.expected, column=f"{key}.{why.column}") from None
         for (_, one), (key, other) in combinations(placed, 2):

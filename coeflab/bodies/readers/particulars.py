@@ -22,4 +22,4 @@ def read(path: Path) -> Body:
     InputError
         Everything missing, unknown or of the wrong unit, by file, line and key.
     """
-    return declared(BodyFile, read_toml(path)).made(path)
+    return declared(BodyFile, read_toml(path)).build(path)

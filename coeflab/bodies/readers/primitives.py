@@ -108,10 +108,10 @@ class FitKeys(takes.Declaration):
 
     def check(self) -> None:
         """Bounds of the errors."""
-        _ = self.made
+        _ = self.built
 
     @property
-    def made(self) -> StandIn:
+    def built(self) -> StandIn:
         """The same as the part holds it."""
         return StandIn(
             self.class_, self.shared, self.volume, self.areas, self.length, misfit=self.misfit, thickness=self.thickness
@@ -183,9 +183,9 @@ class PartKeys(takes.Declaration):
                 found = "an unknown key" if given else "nothing"
                 raise InputError(found, f"the sizes of a {self.form}, {', '.join(SIZES[self.form])}", column=name)
         if self.path is None:
-            _ = self.made()
+            _ = self.build()
 
-    def made(self, folder: Path | None = None) -> Part:
+    def build(self, folder: Path | None = None) -> Part:
         """The part; a mesh is read from the folder."""
         try:
             form, middle = self._form(folder)
@@ -195,7 +195,7 @@ class PartKeys(takes.Declaration):
             raise InputError(why.found, why.expected, column="form", advice=why.advice) from None
         turn = rotation(*self.rotation)
         centre = self.centre + turn @ middle
-        return Part(self.name, form, centre, turn, None if self.fit is None else self.fit.made)
+        return Part(self.name, form, centre, turn, None if self.fit is None else self.fit.built)
 
     def _form(self, folder: Path | None) -> tuple[Form, Array]:
         """The form, and where its centre of volume lies from its origin along its own axes, m."""
@@ -208,10 +208,10 @@ class PartKeys(takes.Declaration):
         if self.count is not None:
             radius, semi_span, chord, thickness = (float(getattr(self, key)) for key in SIZES["finned"][:-1])
             return Finned(radius, semi_span, chord, thickness, FINS[self.count]), np.zeros(3)
-        return _made(self.form, [getattr(self, key) for key in SIZES[self.form]]), np.zeros(3)
+        return _form(self.form, [getattr(self, key) for key in SIZES[self.form]]), np.zeros(3)
 
 
-def _made(kind: str, values: list[float]) -> Form:
+def _form(kind: str, values: list[float]) -> Form:
     if kind in FORMS:
         result: Form = FORMS[kind](*values)
         return result
@@ -241,7 +241,7 @@ class AgreementKeys(takes.Declaration):
     error: takes.Pure | None = None
 
     @property
-    def made(self) -> Agreement:
+    def built(self) -> Agreement:
         """The same as the parts hold it."""
         return Agreement(tuple(getattr(self, motion) for motion in MOTIONS), self.error)
 
@@ -277,8 +277,8 @@ class File(ShapedBodyFile):
 
     def shape(self, folder: Path) -> Parts:
         """All of them."""
-        agreement = None if self.against_mesh is None else self.against_mesh.made
-        return Parts(tuple(p.made(folder) for p in self.part), agreement)
+        agreement = None if self.against_mesh is None else self.against_mesh.built
+        return Parts(tuple(p.build(folder) for p in self.part), agreement)
 
 
 def read(path: Path) -> Body:

@@ -371,7 +371,7 @@ class Likeness:
         return self.form if self.clear else "mesh"
 
     @property
-    def made(self) -> Form:
+    def built(self) -> Form:
         """The form itself."""
         if self.form == "revolution":
             half = len(self.sizes) // 2

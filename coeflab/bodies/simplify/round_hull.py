@@ -179,7 +179,7 @@ def round_hull(vertices: Array, faces: Faces) -> RoundHull | None:
         found = _profile(vertices, faces, *_settled(vertices, faces, axis * np.sign(leading), whole.centre))
         if found is None:
             continue
-        worth = found.roundness * min(1.0, found.volume / whole.volume)
-        if worth > score + 1e-6:
-            best, score = found, worth
+        fitness = found.roundness * min(1.0, found.volume / whole.volume)
+        if fitness > score + 1e-6:
+            best, score = found, fitness
     return best

@@ -25,9 +25,9 @@ from coeflab.bodies.simplify.part_forms import MISFIT, SHARED, Likeness
 from coeflab.core.types import Array, brief
 from coeflab.law.added_mass import AddedMass
 
-TOLD = np.radians(0.05)
+LEAST_TURN = np.radians(0.05)
 POOR, FAILED, DECIMALS = 0.05, 0.2, 6
-MESH, KEPT_FACES = "mesh.ply", 200_000
+MESH, SIMPLIFIED_FACES = "mesh.ply", 200_000
 RULES = (
     "A thin body (mean thickness under 0.2 of the shorter of mean chord and span) is a plate of the area that it "
     "projects along its normal and of the span at the middle of it, hence of its aspect ratio; it has no thickness: volume and edges are left out.",
@@ -118,7 +118,7 @@ class SimplifiedPart:
         out = [f"{'attachment' if self.cut else 'body'} of {self.volume:.5g} m^3: {kind} ({like.reason})"]
         if not like.clear:
             out.append("--box around each of its bodies, or --split convex, divides it")
-        if self.turned > TOLD:
+        if self.turned > LEAST_TURN:
             out.append(f"pose tidied: turned by {np.degrees(self.turned):.1f} deg to right angles")
         return tuple(out)
 
@@ -247,9 +247,9 @@ class Simplification:
 
     def mesh_file(self) -> bytes:
         """The mesh for which the parts stand, as PLY; above 200,000 faces decimated to that many."""
-        if len(self.mesh.faces) <= KEPT_FACES:
+        if len(self.mesh.faces) <= SIMPLIFIED_FACES:
             return ply(self.mesh.vertices, self.mesh.faces)
-        return ply(*surface(simplified(solid(self.mesh.vertices, self.mesh.faces), KEPT_FACES)[0]))
+        return ply(*surface(simplified(solid(self.mesh.vertices, self.mesh.faces), SIMPLIFIED_FACES)[0]))
 
 
 def _rounded(value: float) -> float:

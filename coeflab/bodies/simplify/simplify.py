@@ -21,7 +21,7 @@ from coeflab.bodies.simplify.convex_pieces import convex_pieces
 from coeflab.bodies.simplify.part_forms import Likeness, Piece, likeness
 from coeflab.bodies.simplify.seams import patches
 from coeflab.bodies.simplify.segmentation import segments, without_overlap
-from coeflab.bodies.simplify.simplification import KEPT_FACES, Simplification, SimplifiedPart
+from coeflab.bodies.simplify.simplification import SIMPLIFIED_FACES, Simplification, SimplifiedPart
 from coeflab.core.declarations import Declaration, Text, declared, numbers
 from coeflab.core.errors import InputError, shown
 from coeflab.core.machine import one_thread
@@ -101,10 +101,10 @@ class BoxKeys(Declaration):
 
     def check(self) -> None:
         """A box from a lower to a higher corner."""
-        _ = self.made
+        _ = self.built
 
     @property
-    def made(self) -> NamedBox:
+    def built(self) -> NamedBox:
         """The box."""
         (x0, x1), (y0, y1), (z0, z1) = self.x, self.y, self.z
         return NamedBox(self.name, (x0, y0, z0), (x1, y1, z1))
@@ -135,7 +135,7 @@ def read_boxes(path: Path) -> tuple[NamedBox, ...]:
     ------
     InputError
     """
-    return tuple(b.made for b in declared(BoxFile, read_toml(path)).box)
+    return tuple(b.built for b in declared(BoxFile, read_toml(path)).box)
 
 
 MOST_FACES, DRAWN_FACES = 1_000_000, 20_000
@@ -200,12 +200,12 @@ def simplify(
     if shared > SLIVERS * mesh.volume:
         statements.append(f"shells overlap by {shared:.4g} m^3, which goes to the larger one")
     likes = [likeness(p.solid) for p in found]
-    found, likes, lost, words = _parted(found, likes, () if boxes else shells)
-    unassigned += lost
+    found, likes, missing_volume, words = _parted(found, likes, () if boxes else shells)
+    unassigned += missing_volume
     statements += words
     if convex:
-        found, likes, lost, words = _convex(found, likes)
-        unassigned += lost
+        found, likes, missing_volume, words = _convex(found, likes)
+        unassigned += missing_volume
         statements += words
     unassigned = unassigned if abs(unassigned) > ROUNDING * mesh.volume else 0.0
     largest = max(range(len(found)), key=lambda k: found[k].solid.volume())
@@ -243,7 +243,7 @@ def _whole(mesh: TriangleMesh) -> tuple[solids.Solid, list[str]]:
         raise InputError(str(why), "a closed surface", advice="Repair the mesh first.") from None
     if len(mesh.faces) <= MOST_FACES:
         return whole, []
-    fewer, moved = solids.simplified(whole, KEPT_FACES)
+    fewer, moved = solids.simplified(whole, SIMPLIFIED_FACES)
     change = fewer.volume() / whole.volume() - 1.0
     words = f"{len(mesh.faces)} faces decimated to {fewer.num_tri()}: surface moved by at most {moved:.2g} m, volume "
     return fewer, [f"{words}{100.0 * change:+.3f} %"]
@@ -327,7 +327,7 @@ def _parted(
     """Shells parted along their seams where that gives more forms, and all of them forms; what is like nothing parted along
     its seams, or along faces that meet inward, where all of it is forms then. With the volume that became slivers.
     """
-    out, forms, lost, words = list[_Piece](), list[Likeness](), 0.0, list[str]()
+    out, forms, missing_volume, words = list[_Piece](), list[Likeness](), 0.0, list[str]()
     members: dict[int, list[int]] = {}
     for k, piece in enumerate(found):
         members.setdefault(piece.shell, []).append(k)
@@ -338,8 +338,8 @@ def _parted(
             whole = shells[shell]
             seamed = _tried(whole, patches, len(own) if all(like.clear for like in own) else 1)
             if seamed is not None:
-                words.append(_said(whole, seamed[0], "seams"))
-                lost += sum(p.solid.volume() for p in pieces) - sum(p.volume() for p in seamed[0])
+                words.append(_refusal(whole, seamed[0], "seams"))
+                missing_volume += sum(p.solid.volume() for p in pieces) - sum(p.volume() for p in seamed[0])
                 pieces, own = [_Piece(p, "", False, shell) for p in seamed[0]], seamed[1]
         for piece, like in zip(pieces, own, strict=True):
             parted, how = None, "seams"
@@ -351,14 +351,14 @@ def _parted(
                 out.append(piece)
                 forms.append(like)
                 continue
-            words.append(_said(piece.solid, parted[0], how))
-            lost += piece.solid.volume() - sum(p.volume() for p in parted[0])
+            words.append(_refusal(piece.solid, parted[0], how))
+            missing_volume += piece.solid.volume() - sum(p.volume() for p in parted[0])
             out += [replace(piece, solid=p) for p in parted[0]]
             forms += parted[1]
-    return out, forms, lost, words
+    return out, forms, missing_volume, words
 
 
-def _said(whole: solids.Solid, parts: list[solids.Solid], how: str) -> str:
+def _refusal(whole: solids.Solid, parts: list[solids.Solid], how: str) -> str:
     return f"a body of {whole.volume():.5g} m^3 parted along {how} into {len(parts)} forms"
 
 
@@ -411,7 +411,7 @@ def _by_notches(of: solids.Solid) -> list[solids.Solid]:
 
 def _convex(found: list[_Piece], likes: list[Likeness]) -> tuple[list[_Piece], list[Likeness], float, list[str]]:
     """Pieces and their forms, those that are like nothing cut further; volume that became slivers; what was done."""
-    out, forms, lost, words = [], [], 0.0, []
+    out, forms, missing_volume, words = [], [], 0.0, []
     for piece, like in zip(found, likes, strict=True):
         if like.clear or piece.name:
             out.append(piece)
@@ -424,13 +424,13 @@ def _convex(found: list[_Piece], likes: list[Likeness]) -> tuple[list[_Piece], l
             raise InputError(
                 "--split convex without the package vhacdx", "vhacdx", advice='Install "coeflab[convex]".'
             ) from None
-        lost += piece.solid.volume() - sum(p.volume() for p in parts)
+        missing_volume += piece.solid.volume() - sum(p.volume() for p in parts)
         words.append(
             f"what matches no form, {piece.solid.volume():.5g} m^3, cut into {len(parts)} nearly convex pieces"
         )
         out += [replace(piece, solid=p) for p in parts]
         forms += [likeness(p) for p in parts]
-    return out, forms, lost, words
+    return out, forms, missing_volume, words
 
 
 def _part(piece: _Piece, like: Likeness, length: float) -> SimplifiedPart:
@@ -451,7 +451,7 @@ def _part(piece: _Piece, like: Likeness, length: float) -> SimplifiedPart:
     sizes = tuple(float(round(s, decimals) if s > finest else f"{s:.3g}") for s in like.sizes)
     if like.form == "revolution":
         sizes = tuple(float(round(s, decimals)) + 0.0 for s in like.sizes)
-    result = replace(like, sizes=sizes).made
+    result = replace(like, sizes=sizes).built
     part = Part(piece.name, result, np.asarray(np.round(centre, decimals) + 0.0), turn)
     return SimplifiedPart(
         part, like, own.volume, own.projected(turn), own.extents(turn), piece.cut, turned, surface
@@ -489,8 +489,8 @@ def _counted(likes: Sequence[Likeness]) -> list[str]:
 
 
 def _body(body: Body, shape: Parts) -> Body:
-    made_from = "; ".join(f"{f.name}, sha256 {f.sha256}" for f in body.files)
-    source = Source(body.source.citation, body.source.place, f"coeflab simplify of {made_from}", "computed")
+    inputs_table = "; ".join(f"{f.name}, sha256 {f.sha256}" for f in body.files)
+    source = Source(body.source.citation, body.source.place, f"coeflab simplify of {inputs_table}", "computed")
     computed = Configuration(
         "by_parts", "sum of the parts; overlaps count twice", shape.volume, None, shape.centre_of_volume, None
     )

@@ -85,43 +85,43 @@ def equations_in_words(
         n_runs,
     )
     spoken, tested = [e.spoken for e in equations], int(np.isfinite(found.probability).sum())
-    said = [f"Imposed exactly: {', '.join(spoken)}."]
+    statements = [f"Imposed exactly: {', '.join(spoken)}."]
     rejected, how = found.together < UNLIKELY, " by t tests of the free fit (errors by run, CR2)"
     how += f", p times {tested} for that many equations" if tested > 1 else ""
     for text, p in zip(spoken, np.minimum(found.probability * tested, 1.0), strict=True):
         if np.isfinite(p):
             verb = "reject" if p < UNLIKELY else "do not contradict"
-            said.append(f"The data {verb} {text} ({chance(p)}){how}.")
+            statements.append(f"The data {verb} {text} ({chance(p)}){how}.")
             how = ""
             rejected |= p < UNLIKELY
     untold = [t for t, p in zip(spoken, found.probability, strict=True) if not np.isfinite(p)]
     if untold and np.isfinite(found.together):
         verb = "reject" if found.together < UNLIKELY else "do not contradict"
-        said.append(f"The data {verb} {' with '.join(untold)} ({chance(found.together)}){how}.")
+        statements.append(f"The data {verb} {' with '.join(untold)} ({chance(found.together)}){how}.")
     elif untold:
-        said.append(
+        statements.append(
             f"Not tested, since without the equations the rows do not determine a coefficient: {', '.join(untold)}."
         )
     if rejected:
-        said.append("U95 does not include the error from a rejected equation.")
+        statements.append("U95 does not include the error from a rejected equation.")
     if len(parts) > 1:
         sizes = [scatter(p.matrix, p.data.rows.y, p.errors) for p in parts]
         listed = ", ".join(f"{p.name}' {s:.2g}" for p, s in zip(parts, sizes, strict=True))
         low, high = int(np.argmin(sizes)), int(np.argmax(sizes))
-        said.append(
+        statements.append(
             f"Components are combined with weights 1 / scatter^2 of their own free residuals ({listed}; the size of the "
             f"response where no residual is left): a row of {parts[low].name} counts as "
             f"{(sizes[high] / sizes[low]) ** 2:.3g} rows of {parts[high].name}."
         )
     out, at = [], 0
     for p in parts:
-        free = [s for s, lost in zip(p.every_symbol, found.open[at : at + p.width], strict=True) if lost]
+        free = [s for s, is_open in zip(p.every_symbol, found.open[at : at + p.width], strict=True) if is_open]
         at += p.width
         idle = p.idle
         own = [f"{s} comes from the equations alone: its motion does not occur in the rows of {p.name}." for s in idle]
         if rest := [s for s in free if s not in idle]:
             own.append(f"Without the equations the rows do not determine: {', '.join(rest)}.")
-        out.append([*said, *own])
+        out.append([*statements, *own])
     return out
 
 
@@ -272,7 +272,7 @@ def _several(
         raise input_error("fits.equations_some_coefficients_can", column="constraints", found=str(why)) from None
     # Equations make some coefficients multiples of each other; that is no collinearity of the rows.
     by_rows = np.where(np.abs(fit.correlation) > 1.0 - 1e-9, 0.0, fit.correlation)
-    said = in_words(replace(fit, correlation=by_rows), tuple(s for p in parts for s in p.every_symbol))
+    statements = in_words(replace(fit, correlation=by_rows), tuple(s for p in parts for s in p.every_symbol))
     models, wholes, spreads = [], [], []
     cuts = list(accumulate((len(p.data.run) for p in parts), initial=0))
     design, noise = stack([p.matrix for p in parts], [p.data.rows.y for p in parts], [p.errors for p in parts])
@@ -311,7 +311,9 @@ def _several(
                 remainder=None
                 if np.max(np.abs(fit.residuals[shares])) <= ROUNDING * float(np.max(np.abs(y), initial=0.0))
                 else judged(missing[common, common], none, likeliest, fit.coefficients[common], fit.half_width[common]),
-                statements=tuple(s for s in said if any(name in s.replace(",", " ").split() for name in p.symbols)),
+                statements=tuple(
+                    s for s in statements if any(name in s.replace(",", " ").split() for name in p.symbols)
+                ),
             )
         )
     return models, wholes, spreads

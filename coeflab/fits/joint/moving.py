@@ -49,12 +49,12 @@ def left_out(
     out: list[list[Finding]] = [[] for _ in names]
     for i, name in enumerate(names):
         for needed in (True, False):
-            lost = [one for one in moved.lacking if one.of == i and bool(one.needs) is needed]
-            if lost:
-                needs = dict.fromkeys(primed(n) for one in lost for n in one.needs)
+            lacking = [one for one in moved.lacking if one.of == i and bool(one.needs) is needed]
+            if lacking:
+                needs = dict.fromkeys(primed(n) for one in lacking for n in one.needs)
                 out[i].append(Finding.of(
                     LEFT_OUT, name, severity, statistic=float(np.linalg.norm(shifts[i])),
-                    by="needs" if needed else "form", symbols=tuple(primed(one.symbol) for one in lost),
+                    by="needs" if needed else "form", symbols=tuple(primed(one.symbol) for one in lacking),
                     needs=tuple(needs), distance=distance(shifts[i]),
                 ))  # fmt: skip
     return out

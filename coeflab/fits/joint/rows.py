@@ -78,8 +78,8 @@ class JointRows:
         resting = [k for k in self.present if not np.any(moves[self.campaign == k])]
         if len(resting) in (0, len(self.present)):
             return self
-        said = f"{', '.join(self.campaigns[k] for k in resting)} is at rest in {', '.join(self.rows.x)}: no row of it is used."
-        return self.only(~np.isin(self.campaign, resting), said)
+        note = f"{', '.join(self.campaigns[k] for k in resting)} is at rest in {', '.join(self.rows.x)}: no row of it is used."
+        return self.only(~np.isin(self.campaign, resting), note)
 
 
 def moving(tables: Sequence[ForceTable]) -> tuple[str, ...]:
@@ -128,7 +128,7 @@ def joint_rows(tables: Sequence[ForceTable], variables: Sequence[str], component
                 left[v] += int(np.sum(moves & keep))
                 keep &= ~moves
             own = _only(collect([t], variables, component, area), keep)
-            parts.append(replace(own, set_aside=_beside(t, variables, others, component, area)))
+            parts.append(replace(own, set_aside=_set_aside(t, variables, others, component, area)))
             table += [k] * int(keep.sum())
             run += list(start + index[keep])
         start += len(t)
@@ -137,14 +137,14 @@ def joint_rows(tables: Sequence[ForceTable], variables: Sequence[str], component
     if not full:
         raise TooFewRowsError.for_terms(component, (), 0, "terms")
     rows = _joined(full, tables)
-    said = [f"{n} rows in which {v} moves are left out of {component}: no term of it contains {v}."
+    note = [f"{n} rows in which {v} moves are left out of {component}: no term of it contains {v}."
             for v, n in left.items() if n]  # fmt: skip
     of_table = np.array([campaigns.index(t.campaign) for t in tables], dtype=np.int64)
     index = np.array(table, dtype=np.int64)
-    return JointRows(rows, index, of_table[index], np.array(run, dtype=np.int64), campaigns, tuple(said))
+    return JointRows(rows, index, of_table[index], np.array(run, dtype=np.int64), campaigns, tuple(note))
 
 
-def _beside(
+def _set_aside(
     table: ForceTable, variables: Sequence[str], others: Sequence[str], component: str, area: Area
 ) -> SetAside | None:
     """Printed rows that no fit may use, in which the other variables are at rest."""
@@ -154,8 +154,8 @@ def _beside(
     still = np.ones(len(found.y), dtype=bool)
     for v in others:
         still &= np.abs(found.x[v]) <= AT_REST
-    kept = found.only(still)
-    return replace(kept, x={v: kept.x[v] for v in variables})
+    still_rows = found.only(still)
+    return replace(still_rows, x={v: still_rows.x[v] for v in variables})
 
 
 def _only(rows: Rows, keep: NDArray[np.bool_]) -> Rows:

@@ -118,17 +118,21 @@ class Pooling:
         if own:
             listed = ", ".join(f"{plus_minus(s.intercept, s.half_width)} ({s.campaign})" for s in own)
             out.append(f"Every campaign has its own {self.response}0', subtracted from its rows: {listed}.")
-        told = [str(s.left_out) for s in self.shares if s.left_out.predicted or len(self.shares) > 1]
+        predicted = [str(s.left_out) for s in self.shares if s.left_out.predicted or len(self.shares) > 1]
         if len(self.shares) == 1:
             alone = f"Only {self.shares[0].campaign} has rows of {self.response}: one law for several campaigns is not tested"
-            return (*out, *told, f"{alone}." if told else f"{alone}, and leaving a campaign out is not available.")
+            return (
+                *out,
+                *predicted,
+                f"{alone}." if predicted else f"{alone}, and leaving a campaign out is not available.",
+            )
         quiet, loud = min(self.shares, key=lambda s: s.noise), max(self.shares, key=lambda s: s.noise)
         listed = ", ".join(f"{s.noise:.2g} ({s.campaign})" for s in self.shares)
-        said = f"Weights are 1 / scatter^2 of each campaign about its own law: {listed}"
+        text = f"Weights are 1 / scatter^2 of each campaign about its own law: {listed}"
         if quiet is not loud:
-            said += f"; a row of {quiet.campaign} counts as {(loud.noise / quiet.noise) ** 2:.3g} of {loud.campaign}"
-        out.append(f"{said}.")
-        out += told
+            text += f"; a row of {quiet.campaign} counts as {(loud.noise / quiet.noise) ** 2:.3g} of {loud.campaign}"
+        out.append(f"{text}.")
+        out += predicted
         verdict = {
             None: "Whether one law fits all campaigns cannot be tested",
             False: "One law is neither contradicted nor shown"

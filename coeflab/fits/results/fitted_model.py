@@ -194,8 +194,8 @@ class FittedModel:
     @property
     def secants(self) -> tuple[str, ...]:
         """What `one_size` says, of every coefficient that it speaks of, a sentence each."""
-        said = [self.one_size(i) for i in range(len(self.terms)) if np.isfinite(self.fit.coefficients[i])]
-        return tuple(f"{s[0].upper()}{s[1:]}." for s in said if s)
+        words = [self.one_size(i) for i in range(len(self.terms)) if np.isfinite(self.fit.coefficients[i])]
+        return tuple(f"{s[0].upper()}{s[1:]}." for s in words if s)
 
     def recommended(self, i: int) -> float | None:
         """The value of a coefficient; None where it is open, or no derivative."""
@@ -363,20 +363,20 @@ def residuals_in_words(model: FittedModel, way_out: str = "") -> tuple[str, ...]
     found = f"The residuals are not random (runs test, {chance(fit.runs_probability)})"
     if 1 + int(np.count_nonzero(signs[1:] != signs[:-1])) > expected:
         return (f"{found}: they change sign more often than by chance, and the intervals cannot be trusted.",)
-    said = f"{found}: the form misses something, and the intervals cannot be trusted."
-    return (f"{said} {way_out}".rstrip(),)
+    words = f"{found}: the form misses something, and the intervals cannot be trusted."
+    return (f"{words} {way_out}".rstrip(),)
 
 
 def _remainder_in_words(model: FittedModel, found: Remainder) -> str:
     right = "below 0.001" if found.none < 1e-3 else f"{found.none:.2g}"
     held = next((t for t in model.terms if found.likeliest == f"a term {t}"), None)
     likeliest = found.likeliest if held is None else f"a coefficient of {held} that no equation holds"
-    said = f"The residuals are not random: the form misses something, most likely {likeliest}; probability that it misses nothing: {right}."
+    words = f"The residuals are not random: the form misses something, most likely {likeliest}; probability that it misses nothing: {right}."
     without = model.rejected
     if not without:
-        return f"{said} U95 includes what that may change."
+        return f"{words} U95 includes what that may change."
     have = "has" if len(without) == 1 else "have"
-    return f"{said} It is rejected for {', '.join(without)}, which {have} no U95; that of the others includes what it may change."
+    return f"{words} It is rejected for {', '.join(without)}, which {have} no U95; that of the others includes what it may change."
 
 
 def _own_powers(model: FittedModel, variable: str) -> list[tuple[int, bool]]:
@@ -396,7 +396,7 @@ def _next(model: FittedModel, variable: str) -> Term | None:
 
 
 def next_terms_in_words(
-    model: FittedModel, errors: Array | None, asked: str, beside: Array | None = None
+    model: FittedModel, errors: Array | None, asked: str, set_aside: Array | None = None
 ) -> tuple[str, ...]:
     """Curvature in a motion that the rows show and the terms lack.
 
@@ -411,7 +411,7 @@ def next_terms_in_words(
         Standard errors that weighed the rows.
     asked : str
         Set of terms that was asked for, as advice needs it; empty for none.
-    beside : (n, k) array, optional
+    set_aside : (n, k) array, optional
         Columns that were fitted beside the terms.
 
     Returns
@@ -420,7 +420,7 @@ def next_terms_in_words(
         One sentence a term below 0.01, with what it does to the slope.
     """
     matrix, out = design(model.terms, model.x), []
-    matrix = matrix if beside is None else np.column_stack([matrix, beside])
+    matrix = matrix if set_aside is None else np.column_stack([matrix, set_aside])
     lines = {canonical(t): s for t, s in zip(model.terms, model.symbols, strict=True)}
     if model.fit.rms <= ROUNDING * float(np.max(np.abs(model.y))) or len(model.y) <= matrix.shape[1] + 1:
         return ()
@@ -472,7 +472,7 @@ class OutOfSample:
     of: str = RANGE
 
     @property
-    def told(self) -> bool:
+    def is_known(self) -> bool:
         """Whether the others determine at least half of the rows, so that an error can be given."""
         return 2 * self.predicted >= max(self.rows, 1) and not isnan(self.rms)
 
@@ -482,7 +482,7 @@ class OutOfSample:
         if isnan(self.rms):
             return f"{self.how}: the left-out rows do not vary, so no error is given as a share of their range."
         missing = self.rows - self.predicted
-        if not self.told:
+        if not self.is_known:
             return text_of("fits.too_few_rows_left", how=self.how, predicted=self.predicted, rows=self.rows)
         rest = f"; {missing} of {self.rows} rows are not determined by the others" if missing else ""
         return (

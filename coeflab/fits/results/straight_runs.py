@@ -76,11 +76,11 @@ class StraightRuns:
     @property
     def span(self) -> str:
         """Over which speeds and Reynolds numbers, in words."""
-        said = f"{np.min(self.speed):.3g} to {np.max(self.speed):.3g} m/s"
+        speeds = f"{np.min(self.speed):.3g} to {np.max(self.speed):.3g} m/s"
         if self.reynolds is None:
-            return said
+            return speeds
         low, high = (1e-6 * float(f(self.reynolds)) for f in (np.min, np.max))
-        return f"{said}, Reynolds number {low:.3g} to {high:.3g} million"
+        return f"{speeds}, Reynolds number {low:.3g} to {high:.3g} million"
 
     @property
     def runs(self) -> str:

@@ -158,7 +158,7 @@ def collect(tables: Sequence[ForceTable], variables: Sequence[str], name: str, a
     errors: list[Array | None] = []
     labels: list[str] = []
     names: list[str] = []
-    beside: list[SetAside] = []
+    set_aside: list[SetAside] = []
     for table in tables:
         component = MOMENT_COEFFICIENTS.get(name, name)
         if component in COMPONENTS and component not in table.forces:
@@ -170,7 +170,7 @@ def collect(tables: Sequence[ForceTable], variables: Sequence[str], name: str, a
         errors.append(None if error is None else error[usable])
         labels += [t for t, u in zip(table.labels, usable, strict=True) if u]
         names.append(table.name)
-        beside += [] if not table.exclusions else [_beside(table, variables, name, area, usable)]
+        set_aside += [] if not table.exclusions else [_set_aside_rows(table, variables, name, area, usable)]
     if not ys or not sum(map(len, ys)):
         raise InputError(f"no usable rows for {name}", "a table with that component", column="responses")
     known = [e for e in errors if e is not None]
@@ -183,11 +183,13 @@ def collect(tables: Sequence[ForceTable], variables: Sequence[str], name: str, a
         tables=tuple(names),
         campaign=tables[0].campaign,
         body=tables[0].body,
-        set_aside=joined(beside),
+        set_aside=joined(set_aside),
     )
 
 
-def _beside(table: ForceTable, variables: Sequence[str], name: str, area: Area, used: NDArray[np.bool_]) -> SetAside:
+def _set_aside_rows(
+    table: ForceTable, variables: Sequence[str], name: str, area: Area, used: NDArray[np.bool_]
+) -> SetAside:
     """Printed rows of a table that no fit may use."""
     y, _, printed = response(readmitted(table), name, area)
     rows = printed & ~used

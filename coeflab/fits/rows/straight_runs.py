@@ -51,13 +51,13 @@ def straight_runs(table: ForceTable, length: float) -> StraightRuns | None:
     exact = flat.rms <= ROUNDING * float(np.max(np.abs(primes)))
     probability = 1.0 if exact else float(t_probability(slope / error, float(sloped.freedom[1]))) if error else 0.0
     reynolds = table.reynolds(length) if table.conditions.viscosity is not None else None
-    made = StraightRuns(
+    result = StraightRuns(
         table.name, table.campaign, table.body, tuple(t for t, k in zip(table.labels, used, strict=True) if k), speed,
         np.asarray(table.forces["X"][used]), primes, None if reynolds is None else np.asarray(reynolds[used]),
         float(flat.coefficients[0]), float(flat.half_width[0]), slope * float(np.ptp(over)),
         max(abs(slope) * float(np.max(np.abs(over))), float(np.max(np.abs(flat.residuals)))), probability,
     )  # fmt: skip
-    return replace(made, random=float(sloped.half_width[0])) if made.has_trend else made
+    return replace(result, random=float(sloped.half_width[0])) if result.has_trend else result
 
 
 def resistance(

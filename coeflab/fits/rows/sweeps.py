@@ -149,9 +149,9 @@ def one_size(x: Array, variable: str, speed: Array) -> str:
         return ""
     size = float(np.median(sizes))
     faster = float(np.ptp(speed)) > SAME_SIZE * float(speed.max())
-    said = [f"speeds {speed.min():.3g} to {speed.max():.3g} m/s"] if faster else []
-    said += ["both signs"] if np.any(x > AT_REST) and np.any(x < -AT_REST) else []
-    seen = f" ({', '.join(said)})" if said else ""
+    details = [f"speeds {speed.min():.3g} to {speed.max():.3g} m/s"] if faster else []
+    details += ["both signs"] if np.any(x > AT_REST) and np.any(x < -AT_REST) else []
+    seen = f" ({', '.join(details)})" if details else ""
     name, how = f"{variable}'", " (L/R: other radii, not speeds)" if variable in "qr" else ""
     return f"one |{name}|, {size:.3g}{seen}: {name} and {name}|{name}| cannot be separated; measure |{name}| near {size / 3.0:.2g} and {2.0 * size / 3.0:.2g}{how}"
 
@@ -283,26 +283,26 @@ def only_moving(
         How many rows were left out, where any.
     """
     free = {"u"} | {m for v in variables for m in MOVED_BY.get(v, (v,))}
-    kept, statements = [], []
+    selected, statements = [], []
     for table in counted_once(tables, axial=len(variables) > 1):
         still = np.ones(len(table), dtype=bool)
         for name in ("v", "w", "p", "q", "r", *table.controls):
             if name not in free:
                 still &= np.abs(table.primed_motion(name, length)) <= AT_REST
-        lost = int(np.sum(~still))
-        if not lost:
-            kept.append(table)
+        dropped = int(np.sum(~still))
+        if not dropped:
+            selected.append(table)
             continue
-        statements.append(f"{lost} of {len(table)} rows of {table.name} are left out: other variables move in them.")
-        if lost < len(table):
+        statements.append(f"{dropped} of {len(table)} rows of {table.name} are left out: other variables move in them.")
+        if dropped < len(table):
             moving = tuple(
                 Exclusion(int(i), 0, "", f"moves in more than {', '.join(variables)}") for i in np.flatnonzero(~still)
             )
             usable = {c: mask & still for c, mask in table.usable.items()}
-            kept.append(replace(table, usable=usable, exclusions=(*table.exclusions, *moving)))
-    if not kept:
+            selected.append(replace(table, usable=usable, exclusions=(*table.exclusions, *moving)))
+    if not selected:
         raise input_error("fits.no_row_only_may", column="variable", variables=" and ".join(variables))
-    return kept, tuple(statements)
+    return selected, tuple(statements)
 
 
 FARTHEST = 3.0  # reaches: beyond, a slope from rest speaks of other motions than those measured

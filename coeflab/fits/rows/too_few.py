@@ -11,7 +11,7 @@ from coeflab.law.symbols import primed
 
 FEW_ROWS = "sweep.few"
 MORE = "Run more points or ask for fewer terms."
-Made = TypeVar("Made")
+Fitted = TypeVar("Made")
 
 
 class TooFewRowsError(InputError):
@@ -63,8 +63,8 @@ class TooFewRowsError(InputError):
 
 
 def each_with_rows(
-    names: Sequence[str], make: Callable[[str], Made], subject: str
-) -> tuple[tuple[Made, ...], tuple[Finding, ...]]:
+    names: Sequence[str], make: Callable[[str], Fitted], subject: str
+) -> tuple[tuple[Fitted, ...], tuple[Finding, ...]]:
     """What is made of each response, and findings on those with too few rows.
 
     Raises
@@ -72,7 +72,7 @@ def each_with_rows(
     TooFewRowsError
         All of them have too few.
     """
-    out, few = list[Made](), list[TooFewRowsError]()
+    out, few = list[Fitted](), list[TooFewRowsError]()
     for name in names:
         try:
             out.append(make(name))

@@ -289,18 +289,18 @@ def at_zero_amplitude(
         for n, c in columns.items()
         if c is None or _varies(c)
     }
-    made = {n: w for n, x in designs.items() if (w := _weighed(x, y, scatter)) is not None}
-    at_zero = bool(made)
-    if not made:
+    models = {n: w for n, x in designs.items() if (w := _weighed(x, y, scatter)) is not None}
+    at_zero = bool(models)
+    if not models:
         designs = {ONE: np.hstack([one, aside])}
         single = _weighed(designs[ONE], y, scatter)
         if single is None:
             raise ValueError("as many runs as coefficients at the least")
-        made = {ONE: single}
+        models = {ONE: single}
     # The scatter that the best form leaves is the unit of likelihood, unless the cycles say more.
     known = not np.isnan(scatter.variance[0])
-    unit = max(min(w.misfit for w in made.values()), 1.0 if known else 0.0) or 1.0
-    score = np.array([w.misfit * w.spare / unit + len(w.beta) * np.log(len(y)) for w in made.values()])
+    unit = max(min(w.misfit for w in models.values()), 1.0 if known else 0.0) or 1.0
+    score = np.array([w.misfit * w.spare / unit + len(w.beta) * np.log(len(y)) for w in models.values()])
     weights = np.exp(-0.5 * (score - score.min()))
     weights /= weights.sum()
     forms = tuple(
@@ -315,14 +315,14 @@ def at_zero_amplitude(
             float(w.half[1]),
             float(w.correlation[0, 1]),
         )
-        for (n, w), p in zip(made.items(), weights, strict=True)
+        for (n, w), p in zip(models.items(), weights, strict=True)
     )
     value = float(sum(f.weight * f.value for f in forms))
     random = float(np.sqrt(sum(f.weight * f.half_width**2 for f in forms)))
     form = 2.0 * float(np.sqrt(sum(f.weight * (f.value - value) ** 2 for f in forms)))
     likeliest = max(forms, key=lambda f: f.weight).name
     slope = NOTHING if to_rest else _over_frequency(designs[likeliest], y, scatter, frequency)
-    return AtZero(value, random, form if at_zero else np.nan, forms, at_zero, slope, made[likeliest].chance)
+    return AtZero(value, random, form if at_zero else np.nan, forms, at_zero, slope, models[likeliest].chance)
 
 
 def _varies(x: Array) -> bool:

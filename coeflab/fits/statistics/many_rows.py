@@ -112,9 +112,9 @@ class Strips:
         """In units of ``size``."""
         return Strips(self.nodes / size, self.shares)
 
-    def of(self, kept: NDArray[np.intp]) -> Strips:
+    def of(self, selected: NDArray[np.intp]) -> Strips:
         """Those of some rows."""
-        return Strips(self.nodes[kept], self.shares[kept])
+        return Strips(self.nodes[selected], self.shares[selected])
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -166,13 +166,13 @@ def condensed(x: Array, y: Array, used: NDArray[np.bool_], variance: Array | Non
     -------
     Condensed
     """
-    kept = np.flatnonzero(used)
-    near = by_neighbours(x[kept], y[kept])
-    far = near.probability < LEVEL / len(kept)
-    order = np.argsort(x[kept[~far]], kind="stable")
-    gone, kept = kept[far], kept[~far][order]
-    t, largest = x[kept], float(np.abs(x).max())
-    w = np.ones(len(kept)) if variance is None else 1.0 / variance[kept]
+    selected = np.flatnonzero(used)
+    near = by_neighbours(x[selected], y[selected])
+    far = near.probability < LEVEL / len(selected)
+    order = np.argsort(x[selected[~far]], kind="stable")
+    gone, selected = selected[far], selected[~far][order]
+    t, largest = x[selected], float(np.abs(x).max())
+    w = np.ones(len(selected)) if variance is None else 1.0 / variance[selected]
     distinct, labels = np.unique(np.round(t / largest, 9), return_inverse=True)
     what = f"{len(distinct)} settings"
     if len(distinct) > SETTINGS:
@@ -180,7 +180,7 @@ def condensed(x: Array, y: Array, used: NDArray[np.bool_], variance: Array | Non
         labels = np.unique(labels, return_inverse=True)[1]
         what = f"{labels[-1] + 1} strips of neighbouring settings"
     strip = np.full(len(x), -1, dtype=np.intp)
-    strip[kept] = labels
+    strip[selected] = labels
     total = np.bincount(labels, w)
     first = np.searchsorted(labels, np.arange(len(total)))
     place = np.arange(len(t)) - first[labels]
@@ -192,7 +192,7 @@ def condensed(x: Array, y: Array, used: NDArray[np.bool_], variance: Array | Non
     note = f"{len(x)} rows count as means over {what}"
     if len(gone):
         note += f"; {len(gone)} rows do not fit their neighbours and are left out"
-    middle, mean = (np.asarray(np.bincount(labels, w * z) / total) for z in (t, y[kept]))
+    middle, mean = (np.asarray(np.bincount(labels, w * z) / total) for z in (t, y[selected]))
     return Condensed(middle, mean, 1.0 / total, strips, strip, (note,))
 
 
@@ -221,9 +221,11 @@ def images(x: Array, y: Array, sign: float) -> NDArray[np.bool_]:
     sign : float
         Of the image of y: -1 of an odd, 1 of an even force.
     """
-    kept = 1.0 if np.count_nonzero(x > 0.0) >= np.count_nonzero(x < 0.0) else -1.0
-    there = {(a, b) for a, b in zip(x.tolist(), y.tolist()) if a * kept > 0.0}
-    return np.array([a * kept < 0.0 and (-a, sign * b) in there for a, b in zip(x.tolist(), y.tolist())], dtype=bool)
+    selected = 1.0 if np.count_nonzero(x > 0.0) >= np.count_nonzero(x < 0.0) else -1.0
+    there = {(a, b) for a, b in zip(x.tolist(), y.tolist()) if a * selected > 0.0}
+    return np.array(
+        [a * selected < 0.0 and (-a, sign * b) in there for a, b in zip(x.tolist(), y.tolist())], dtype=bool
+    )
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -125,23 +125,23 @@ def _estimate(rows: Rows, odd: bool) -> OriginSlope:
     left_out: list[int] = []
     all_u95 = float("nan")
     while True:
-        kept = np.flatnonzero(used)
-        if len(np.unique(x[kept])) < 3 or not np.any(x):
-            nan, reason = float("nan"), f"{len(np.unique(x[kept]))} different settings, at least 3 are needed"
+        selected = np.flatnonzero(used)
+        if len(np.unique(x[selected])) < 3 or not np.any(x):
+            nan, reason = float("nan"), f"{len(np.unique(x[selected]))} different settings, at least 3 are needed"
             return OriginSlope(
                 nan, nan, nan, nan, nan, Status.TOO_FEW, reason, notes, nan, wrong, without, used, nan,
-                None, y[kept], np.zeros(0),
+                None, y[selected], np.zeros(0),
             )  # fmt: skip
         design = prepare(
-            x[kept], None if variance is None else variance[kept], strips=strips and strips.of(kept), odd=odd
+            x[selected], None if variance is None else variance[selected], strips=strips and strips.of(selected), odd=odd
         )  # fmt: skip
-        many = estimate_many(design, y[kept], stated)
-        wrong[kept], without[kept] = many.wrong[0], many.without[0]
-        worst = int(kept[np.argmax(many.wrong[0])])
-        if wrong[worst] <= REMOVE or len(left_out) >= max(1, len(x) // 6) or len(kept) <= FEWEST:
+        many = estimate_many(design, y[selected], stated)
+        wrong[selected], without[selected] = many.wrong[0], many.without[0]
+        worst = int(selected[np.argmax(many.wrong[0])])
+        if wrong[worst] <= REMOVE or len(left_out) >= max(1, len(x) // 6) or len(selected) <= FEWEST:
             break
         if not left_out:
-            every = estimate_many(design, y[kept], stated, deletions=False)
+            every = estimate_many(design, y[selected], stated, deletions=False)
             with_all, all_u95 = float(every.value[0]), float(every.u95[0]) * (np.sqrt(2.0) if mirrored else 1.0)
         used[worst] = False
         left_out.append(worst)
@@ -158,7 +158,7 @@ def _estimate(rows: Rows, odd: bool) -> OriginSlope:
     return OriginSlope(
         value, lower, upper, u95, widen * float(many.sd[0]), status, reason, notes,
         float(many.noise[0]), wrong, without, used, with_all if left_out else value,
-        design, y[kept], many.weights[0], all_u95,
+        design, y[selected], many.weights[0], all_u95,
     )  # fmt: skip
 
 

@@ -119,21 +119,21 @@ def missing(terms: Sequence[Term], variables: Sequence[str]) -> tuple[Missing, .
         lower = ((v, n - 1, False),) if n > 1 else ()
         return Term(((v, n, False),)), Term((*lower, (v, 1, True)))
 
-    def made(term: Term, excess: int, share: float = 1.0, bend: float = 0.0) -> Missing:
+    def missing_term(term: Term, excess: int, share: float = 1.0, bend: float = 0.0) -> Missing:
         alike = sum(term.odd_in(v) for v in used) % 2 in parities
         return Missing(term, share * (1.0 if alike else OTHER_PARITY) * HIGHER ** max(excess - 1, 0), alike, bend)
 
-    out = [made(Term(), 0, OFFSET)]
+    out = [missing_term(Term(), 0, OFFSET)]
     for v in used:
         for n in range(1, top[v] + BEYOND + 1):
-            out += [made(t, n - top[v]) for t in both(v, n)]
-        out += [made(t, 1, BENT, bend) for bend in BENDS for t in both(v, 1)]
+            out += [missing_term(t, n - top[v]) for t in both(v, n)]
+        out += [missing_term(t, 1, BENT, bend) for bend in BENDS for t in both(v, 1)]
     degree = max(TOTAL, max(top.values(), default=0) + 1)
     for a, b in combinations(used, 2):
         for i, j in product(range(1, degree), repeat=2):
             if i + j <= degree:
                 each = (Term((*p.factors, *q.factors)) for p in both(a, i) for q in both(b, j))
-                out += [made(t, max(i - top[a], j - top[b])) for t in each]
+                out += [missing_term(t, max(i - top[a], j - top[b])) for t in each]
     return tuple(out)
 
 
@@ -254,10 +254,10 @@ def _of_block(
     keep = np.flatnonzero(np.diag(gram) > (VISIBLE * size) ** 2)
     if freedom < 2 or not len(keep) or total <= 0.0:
         return nothing
-    kept = [functions[int(k)] for k in keep]
-    odds = np.array([g.odds for g in kept])
-    alike = np.array([g.alike for g in kept])
-    smooth = alike & np.array([not g.bend for g in kept])
+    retained = [functions[int(k)] for k in keep]
+    odds = np.array([g.odds for g in retained])
+    alike = np.array([g.alike for g in retained])
+    smooth = alike & np.array([not g.bend for g in retained])
     gram, moment, moves = gram[np.ix_(keep, keep)], moment[keep], back @ inside[:, keep]
     # One function alone: the ratio of its square to the noise is its restricted likelihood's largest size plus one.
     level = np.diag(gram)
@@ -286,12 +286,12 @@ def _of_block(
     shares[1:] = np.where(gain[1:] > 0.0, shares[1:], 0.0)
     shares /= shares.sum()
     weights = shares.copy()
-    for k in (k for k, g in enumerate(kept) if g.term in companions and not g.bend):
+    for k in (k for k, g in enumerate(retained) if g.term in companions and not g.bend):
         # As a term of the form: whole, whether the residuals ask for it or not, and whatever else they ask for.
         shift, spread = moves[:, k] * moment[k] / level[k], moves[:, k] * np.sqrt(noise[k] / level[k])
         weights[k + 1], parts[k + 1] = 1.0, np.outer(shift, shift) + np.outer(spread, spread)
     covariance = float(stdtrit(freedom, 0.975)) ** 2 * np.einsum("k,kij->ij", weights, np.array(parts))
-    likeliest = str(kept[int(np.argmax(shares[1 : len(kept) + 1]))]) if shares[0] < 0.5 else ""
+    likeliest = str(retained[int(np.argmax(shares[1 : len(retained) + 1]))]) if shares[0] < 0.5 else ""
     return covariance, float(shares[0]), likeliest
 
 

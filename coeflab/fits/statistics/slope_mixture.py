@@ -76,7 +76,7 @@ class Members:
         Orthonormal columns that span the whitened terms.
     turned : (p, n, j) array
         ``base`` times ``root``, zeros where n < p.
-    beside : (n, j) array
+    remaining : (n, j) array
         Squares of what ``base`` does not span of each column of ``root``.
     weightless : (n, j) array
         Leverage that is rounding.
@@ -92,7 +92,7 @@ class Members:
     root: Array
     base: Array
     turned: Array
-    beside: Array
+    remaining: Array
     weightless: Array
     rotations: Rotations
     precision: Array
@@ -326,27 +326,27 @@ def _evaluate(
 
     whitened = m.root @ rest.T
     spanned = np.swapaxes(m.base, 1, 2) @ whitened
-    beside = whitened - m.base @ spanned
+    remaining = whitened - m.base @ spanned
     top = np.zeros((len(order), b, j))
     top[: spanned.shape[1]] = spanned.transpose(1, 2, 0)
     below = [-inverse * start[:, order[column]].reshape(b, 1, 1, 1, 1) for column, inverse in rotations.sizes]
     last, own = rotations.turned(top, below)
     end = rotations.triangle[-1][0]
-    squares = (beside * beside).sum(1).T[:, None] + floor[:, None, None] + flat(_sum([e * e for e in own]), b)
+    squares = (remaining * remaining).sum(1).T[:, None] + floor[:, None, None] + flat(_sum([e * e for e in own]), b)
     mean, unit_variance = flat(last / end, b) + start[:, 1, None, None], flat(end**-2.0, 1)
     likelihood = _log_density(nu) - 0.5 * m.log_det - 0.5 * nu * np.log(squares)
     weight, variance = m.log_prior + POWER * likelihood, np.maximum(squares / nu, least[:, None, None])
     main = [z.reshape(b, -1) for z in (weight, mean, variance * unit_variance, variance)]
     if not deletions:
         return main, []
-    ahead = np.ascontiguousarray((np.swapaxes(m.root, 1, 2) @ beside).transpose(2, 1, 0))
+    ahead = np.ascontiguousarray((np.swapaxes(m.root, 1, 2) @ remaining).transpose(2, 1, 0))
     prior = m.log_prior + POWER * (_log_density(nu - 1.0) - 0.5 * m.log_det)
     found = []
     some = max(1, AT_ONCE // (k * j * b))
     for rows in (slice(i, i + some) for i in range(0, n, some)):
         last, each = rotations.turned(m.turned[:, rows], [0.0] * len(own))
         many = len(last)
-        leverage = m.beside[rows, None] + flat(_sum([e * e for e in each]), many)
+        leverage = m.remaining[rows, None] + flat(_sum([e * e for e in each]), many)
         error = _sum([z[:, None] * e for z, e in zip(own, each)])
         error = ahead[:, rows, None] + error.reshape(b, many, k, j)
         step = error / leverage

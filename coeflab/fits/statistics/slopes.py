@@ -221,14 +221,14 @@ def determined(
     if target == "1":
         return at_rest, half, moved
     x, y = slope.design.x, slope.y
-    kept = np.flatnonzero(np.abs(x) > NEAR_REST * slope.design.largest)
+    selected = np.flatnonzero(np.abs(x) > NEAR_REST * slope.design.largest)
     floor = middle or NO_FLOOR * float(np.abs(y - at_rest).max())
-    error = floor * np.sqrt(slope.design.variance[kept]) / np.abs(x[kept])
-    bent = origin_slope.estimate(x[kept], (y[kept] - at_rest) / x[kept], error, odd=odd)
+    error = floor * np.sqrt(slope.design.variance[selected]) / np.abs(x[selected])
+    bent = origin_slope.estimate(x[selected], (y[selected] - at_rest) / x[selected], error, odd=odd)
     if bent.design is None:
         return None, None, np.zeros(len(x))
-    out, kept = np.zeros(len(x)), kept[bent.used]
-    out[kept] = by_row(bent, 1) / x[kept]
+    out, selected = np.zeros(len(x)), selected[bent.used]
+    out[selected] = by_row(bent, 1) / x[selected]
     felt = float(out.sum())
     return bent.value, float(np.hypot(bent.u95, felt * half)), out - felt * moved
 

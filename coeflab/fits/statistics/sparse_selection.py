@@ -160,7 +160,7 @@ def refine(matrix: Array, y: Array, starts: Iterable[Support], known: int = 0) -
     return ranked[0][0], float(lead)
 
 
-def _kept(coefficients: Array) -> Support:
+def _support(coefficients: Array) -> Support:
     return frozenset(int(i) for i in np.flatnonzero(np.abs(coefficients) > ZERO))
 
 
@@ -203,13 +203,13 @@ def select(
     if not active or not np.any(y):
         return Selection((), float("nan"), (), tuple([0.0] * p), float("inf"))
     matrix = matrix[:, active]
-    path = [_kept(optimizer(matrix, y, float(t))) for t in thresholds]
+    path = [_support(optimizer(matrix, y, float(t))) for t in thresholds]
     fold = shuffled_folds(n, folds, seed)
     errors = np.empty((len(thresholds), folds))
     for k in range(folds):
         train, test = fold != k, fold == k
         for m, t in enumerate(thresholds):
-            support = _kept(optimizer(matrix[train], y[train], float(t)))
+            support = _support(optimizer(matrix[train], y[train], float(t)))
             errors[m, k] = np.mean((y[test] - matrix[test] @ _refit(matrix[train], y[train], support)) ** 2)
     at = one_standard_error(errors)
     best, lead = refine(matrix, y, [path[at], *path], int(intercept))
@@ -217,7 +217,7 @@ def select(
     rng = np.random.default_rng(seed + 1)
     for _ in range(resamples):
         rows: NDArray[np.intp] = rng.integers(0, n, n)
-        for j in _kept(optimizer(matrix[rows], y[rows], float(thresholds[at]))):
+        for j in _support(optimizer(matrix[rows], y[rows], float(thresholds[at]))):
             counts[active[j]] += 1.0
     return Selection(
         support=tuple(active[j] for j in sorted(best)),

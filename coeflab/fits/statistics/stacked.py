@@ -81,14 +81,14 @@ def _by_run(f: Factorised, back: Array, residuals: Array, run: Index, n_runs: in
     """
     p, rank = back.shape
     spread, size, shadow = np.zeros((p, n_runs)), np.zeros((p, n_runs)), np.zeros((p, n_runs, rank))
-    lost = np.zeros(p, dtype=bool)
+    undetermined = np.zeros(p, dtype=bool)
     order = np.argsort(run, kind="stable")
     for rows in np.split(order, np.flatnonzero(np.diff(run[order])) + 1):
         basis, g = f.basis[rows], int(run[rows[0]])
         room, turn = np.linalg.eigh(np.eye(len(rows)) - basis @ basis.T)
         free = room > 1.0 - linear_model.FULL_LEVERAGE
         moves = back @ basis.T
-        lost |= np.linalg.norm(moves @ turn[:, ~free], axis=1) > 1e-9 * np.linalg.norm(back, axis=1)
+        undetermined |= np.linalg.norm(moves @ turn[:, ~free], axis=1) > 1e-9 * np.linalg.norm(back, axis=1)
         adjusted = moves @ ((turn[:, free] / np.sqrt(room[free])) @ turn[:, free].T)
         spread[:, g] = adjusted @ residuals[rows]
         size[:, g] = np.einsum("pi,pi->p", adjusted, adjusted)
@@ -97,7 +97,7 @@ def _by_run(f: Factorised, back: Array, residuals: Array, run: Index, n_runs: in
     first = np.sum(size - norms, axis=1)
     gram = np.einsum("pgk,pgl->pkl", shadow, shadow)
     second = np.sum(size**2 - 2.0 * size * norms, axis=1) + np.sum(gram**2, axis=(1, 2))
-    known = (second > 0.0) & ~lost
+    known = (second > 0.0) & ~undetermined
     return spread, np.where(known, first**2 / np.where(known, second, 1.0), 0.0)
 
 
@@ -162,13 +162,13 @@ def freed(
     lengths = np.linalg.norm(c / size, axis=1)
     contrast, right = c / size / lengths[:, None], d / lengths
     hidden = contrast @ null
-    told = np.linalg.norm(hidden, axis=1) <= OPEN
+    determined = np.linalg.norm(hidden, axis=1) <= OPEN
     probability = np.full(len(d), np.nan)
     stacked_runs = np.concatenate(runs)
-    probability[told] = _violated(f, contrast[told], right[told], y, stacked_runs, n_runs)
-    left, singular, _ = np.linalg.svd(hidden[~told])
+    probability[determined] = _violated(f, contrast[determined], right[determined], y, stacked_runs, n_runs)
+    left, singular, _ = np.linalg.svd(hidden[~determined])
     mixed = left[:, int(np.sum(singular > OPEN)) :].T
-    combined = _violated(f, mixed @ contrast[~told], mixed @ right[~told], y, stacked_runs, n_runs)
+    combined = _violated(f, mixed @ contrast[~determined], mixed @ right[~determined], y, stacked_runs, n_runs)
     known = combined[np.isfinite(combined)]
     together = float(min(1.0, len(known) * known.min())) if len(known) else float("nan")
     return Freed(probability, together, np.any(np.abs(null) > OPEN, axis=1))

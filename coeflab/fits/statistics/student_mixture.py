@@ -11,7 +11,7 @@ from scipy import special
 from coeflab.core.types import Array, locked
 
 # Members kept for the quantiles, equal parts of the reach that a quantile is told by, and where a distribution is tabulated.
-KEPT = 256
+COMPONENTS_USED = 256
 PARTS = 2.0**22
 CLOSE, STEPS = 0.01, 80  # parts between the last two steps; steps at most
 TABLE = np.sin(0.5 * np.pi * np.linspace(-1.0, 1.0, 2001)[1:-1])
@@ -35,7 +35,7 @@ def mixture_quantiles(
         median +- half has the probability 1 - 2 tail.
     sd : (b,) array
     """
-    keep = np.argpartition(-log_weight, min(KEPT, mean.shape[1]) - 1, axis=1)[:, :KEPT]
+    keep = np.argpartition(-log_weight, min(COMPONENTS_USED, mean.shape[1]) - 1, axis=1)[:, :COMPONENTS_USED]
     log_weight, mean, scale, freedom = (np.take_along_axis(z, keep, 1) for z in (log_weight, mean, scale, freedom))
     w = special.softmax(log_weight, axis=1)
     middle = (w * mean).sum(1)

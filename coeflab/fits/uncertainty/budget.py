@@ -271,8 +271,8 @@ class Budget:
     def __repr__(self) -> str:
         largest = max(self.parts, key=lambda p: p.half_width, default=None)
         most = "" if largest is None else f", most of it {largest.name}"
-        said = plus_minus(self.value, self.u95)
-        return in_angles(self, f"{primed(self.symbol)} = {said} by {len(self.parts)} parts{most}, {self.campaign}")
+        text = plus_minus(self.value, self.u95)
+        return in_angles(self, f"{primed(self.symbol)} = {text} by {len(self.parts)} parts{most}, {self.campaign}")
 
     def _repr_html_(self) -> str:
         """Its parts as bars and in a table, for notebooks."""
@@ -521,7 +521,7 @@ def open_parts(found: Sequence[Budget]) -> tuple[Finding, ...]:
             "table": study.table,
         }  # fmt: skip
         if not judged.convergence.converges:
-            level = Severity.WARN if any(_is_told(b) for b in those) else Severity.NOTE
+            level = Severity.WARN if any(_is_significant(b) for b in those) else Severity.NOTE
             out.append(
                 Finding.of(
                     "budget.grid_not_converging", about, level, statistic=judged.relative, how=judged.convergence.value,
@@ -555,7 +555,7 @@ def open_parts(found: Sequence[Budget]) -> tuple[Finding, ...]:
     return tuple(out)
 
 
-def _is_told(b: Budget) -> bool:
+def _is_significant(b: Budget) -> bool:
     """Whether a value is told from zero but for its grid study."""
     return abs(b.value) > b.joined(*(p.name for p in b.parts if p.name != "grid"))
 

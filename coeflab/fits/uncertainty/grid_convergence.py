@@ -310,13 +310,13 @@ def fitted_convergence(values: Array, sizes: Array, *, used: int = 0) -> GridCon
     best, observed = _chosen(f, h)
     per_grid = float(np.ptp(f)) / (len(f) - 1)
     error = abs(float(best.on_grids[place]) - best.limit)
-    beside = abs(float(f[place] - best.on_grids[place]))
+    scatter = abs(float(f[place] - best.on_grids[place]))
     good = best.deviation < per_grid
     safety = WITHIN if good and observed is not None and LOWEST <= observed < RELIABLE else OUTSIDE
     if good or per_grid == 0.0:
-        half = safety * error + best.deviation + beside
+        half = safety * error + best.deviation + scatter
     else:
-        half = OUTSIDE * best.deviation / per_grid * (error + best.deviation + beside)
+        half = OUTSIDE * best.deviation / per_grid * (error + best.deviation + scatter)
     kind = Convergence.FITTED
     slow = observed is not None and observed < LOWEST
     if slow:

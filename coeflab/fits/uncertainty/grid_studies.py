@@ -155,9 +155,9 @@ def variant_studies(table: ForceTable, component: str) -> tuple[VariantStudy, ..
                 continue
             apart = np.maximum(np.abs(force[rows] - force[row]), np.hypot(noise[rows], noise[row]))
             half = 2.0 / 3.0**0.5 * float(np.max(apart))
-            said = ", ".join(f"{table.variants[i].partition('= ')[2]} {force[i]:.4g}" for i in rows)
+            others = ", ".join(f"{table.variants[i].partition('= ')[2]} {force[i]:.4g}" for i in rows)
             changed = tuple((table.variants[i], float(force[i])) for i in rows)
-            text = f"{part}: {force[row]:.4g} in use, {said}"
+            text = f"{part}: {force[row]:.4g} in use, {others}"
             own = (part, table.name, component, _setting(table, row), _moving(table, row))
             found.append(VariantStudy(*own, float(force[row]), changed, half, text))
     return tuple(found)

@@ -192,10 +192,10 @@ def not_driven(parameters: ParameterFile) -> tuple[str, ...]:
     """What of thrusters the Thruster system has no place for."""
     out = []
     for t in parameters.thrusters:
-        lost = [] if t.curve.unit == "N" and len(t.curve.segments) == 1 else ["its curve over the command"]
-        lost += ["its reaction torque"] if t.torque_curve is not None else []
-        lost += ["its tilt"] if t.tilt_axis is not None else []
-        out += [f"thruster {one_line(t.name)}: {', '.join(lost)}; it takes newtons"] if lost else []
+        dropped = [] if t.curve.unit == "N" and len(t.curve.segments) == 1 else ["its curve over the command"]
+        dropped += ["its reaction torque"] if t.torque_curve is not None else []
+        dropped += ["its tilt"] if t.tilt_axis is not None else []
+        out += [f"thruster {one_line(t.name)}: {', '.join(dropped)}; it takes newtons"] if dropped else []
     return tuple(out)
 
 

@@ -185,7 +185,7 @@ def placed(parameters: ParameterFile) -> tuple[str, ...]:
         AXES,
         "the link's origin is the reference point",
         *moved,
-        f"weight and buoyancy at {at.gravity:g} m/s^2: {at.said}",
+        f"weight and buoyancy at {at.gravity:g} m/s^2: {at.note}",
         f"the collision, a cylinder {at.length:.4g} m long of radius {at.radius:.4g} m, is that volume in its centre, at {_spaced(at.centre_of_buoyancy)} m; the system Buoyancy of the world gives its force, and in a world without that system the model sinks",
     )
 

@@ -313,10 +313,10 @@ def left_behind(found: MFile, subject: str, read: tuple[str, ...]) -> tuple[Find
     )
 
 
-def _coriolis_note(found: MFile, kept: bool) -> str:
-    if kept and found.changes_coriolis:
+def _coriolis_note(found: MFile, has_coriolis: bool) -> str:
+    if has_coriolis and found.changes_coriolis:
         return "the file adds C_A(nu) nu and then sets entries of it, which is not read: totals here include all of it"
-    if kept:
+    if has_coriolis:
         return "the file adds C_A(nu) nu itself: its derivatives are viscous, totals are written here"
     if found.adds_coriolis:
         return "the file adds C_A(nu) nu itself, which this added mass does not allow: its products are left out"

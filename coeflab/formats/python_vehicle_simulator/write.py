@@ -75,7 +75,7 @@ def render(parameters: ParameterFile) -> Mapping[str, bytes]:
     p, mass = parameters, parameters.mass
     commands, (largest, turning) = command_names(parameters), limits(parameters)
     lags = {4 + k: t.lag for k, t in enumerate(p.thrusters) if t.lag is not None}
-    kept = ["limits and rates of angles"] * bool(largest) + ["lags of thrusters"] * bool(lags)
+    exceptions = ["limits and rates of angles"] * bool(largest) + ["lags of thrusters"] * bool(lags)
     point = ", ".join(f"{x:g}" for x in p.reference_point.point)
     lines = [
         "#!/usr/bin/env python3",
@@ -95,7 +95,7 @@ def render(parameters: ParameterFile) -> Mapping[str, bytes]:
             controls="".join(f"\n    {words}" for words in control_signs(p)),
             vector=", ".join((*_VECTOR, *commands)).replace("\\", "/").replace('"', "'"),
             labels="".join(f", {c!r}" for c in commands),
-            kept=f" but for {' and '.join(kept)}" if kept else "",
+            kept=f" but for {' and '.join(exceptions)}" if exceptions else "",
         ),
         f"        self.name = {one_line(p.name)!r}",
         f"        self.rho = {p.conditions.density!r}  # kg/m^3",
@@ -131,11 +131,13 @@ def render(parameters: ParameterFile) -> Mapping[str, bytes]:
     tail = (
         _own("tail")
         .replace("@DRIVEN@", "\n        tau += driven(self.thrusters, self.segments, u_actual[4:])" if commands else "")
-        .replace("@ACTUAL@", "self.turned(u_actual, u_control, sampleTime)" if kept else "np.array(u_control, float)")
+        .replace(
+            "@ACTUAL@", "self.turned(u_actual, u_control, sampleTime)" if exceptions else "np.array(u_control, float)"
+        )
         .replace("@ZEROS@", ", 0.0" * len(commands))
     )
     lines += [*_added_mass(accelerations), *_force(terms, bool(tables), largest), tail.rstrip()]
-    if kept:
+    if exceptions:
         lines.append(_own("turned").format(angles=angles, lags=lags).rstrip())
     if commands:
         lines.append(_own("driven").rstrip())

@@ -67,24 +67,24 @@ def command(
         numbers["--shift"], numbers["--lasts"], numbers["--pitch-damping"] if pitch_damping else _estimated(hull, density), not munk,
         not pitch_damping, numbers["--depth"] if depth else None,
     )  # fmt: skip
-    made = glider_of(stem(hull.name), cf.read_table(campaign), hull, hull.added_mass(method, density), ordered)
-    written = {} if out is None else write_all(out, {f"{made.name}.glider.toml": made.file()})
+    result = glider_of(stem(hull.name), cf.read_table(campaign), hull, hull.added_mass(method, density), ordered)
+    written = {} if out is None else write_all(out, {f"{result.name}.glider.toml": result.file()})
     paths = [str((out or Path()) / name) for name in written]
     if json:
         from coeflab.report.as_json.findings import finding_as_data
 
         show.json_object(
             {
-                "name": made.name,
-                "mass": {k: getattr(made.mass, k) for k in made.mass.__slots__},
+                "name": result.name,
+                "mass": {k: getattr(result.mass, k) for k in result.mass.__slots__},
                 "files": paths,
-                "findings": [finding_as_data(f) for f in made.findings],
+                "findings": [finding_as_data(f) for f in result.findings],
             }
         )
         return
-    show.table(glide_tables.steady(made, tuple(s for p in made.phases for s in steady_glides(made, p))))
-    show.table(glide_tables.basis(made))
-    for found in made.findings:
+    show.table(glide_tables.steady(result, tuple(s for p in result.phases for s in steady_glides(result, p))))
+    show.table(glide_tables.basis(result))
+    for found in result.findings:
         show.marked(str(found.severity), remark(found))
     for path in paths:
         show.path(path)

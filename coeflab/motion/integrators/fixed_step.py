@@ -236,6 +236,6 @@ def largest_step(eigenvalues: NDArray[np.complex128]) -> float:
     for _ in range(HALVINGS):
         middle = 0.5 * (low + high)
         z = middle * (decaying / size)
-        stands = np.abs(1 + z * (1 + z / 2 * (1 + z / 3 * (1 + z / 4)))) <= 1.0
-        low, high = np.where(stands, middle, low), np.where(stands, high, middle)
+        stable = np.abs(1 + z * (1 + z / 2 * (1 + z / 3 * (1 + z / 4)))) <= 1.0
+        low, high = np.where(stable, middle, low), np.where(stable, high, middle)
     return float(np.min(low / size))

@@ -87,10 +87,10 @@ def plan(vehicle: Vehicle, options: Mapping[str, Any]) -> Manoeuvre:
     steps = [f"thrust {o.power:g} of the approach's"] * bool(approach)
     steps += [f"bow planes (db) {np.degrees(orders['db']):+.4g} deg"] if o.bow else []
     steps += [f"stern planes amidships {o.freed:g} s later"] if o.freed else ["stern planes stay jammed"]
-    said = (
+    limits = (
         f"stern planes (ds) jammed at {np.degrees(jam):+.4g} deg, to {o.way}; after {reaction:.4g} s {', '.join(steps)}"
     )
-    return Manoeuvre(NAME, phases, nu, orders=approach, statements=(words, said))
+    return Manoeuvre(NAME, phases, nu, orders=approach, statements=(words, limits))
 
 
 def figures(trajectory: Trajectory, vehicle: Vehicle, options: Mapping[str, Any]) -> tuple[Figure, ...]:

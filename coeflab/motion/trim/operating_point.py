@@ -14,7 +14,7 @@ from coeflab.motion.dynamics import Growth
 from coeflab.motion.trim.solver import HOLDS, Found, Problem, solve
 
 FAMILY_SHOWN = 0.05  # an unknown that moves less, of the one that moves most, is left out of the words
-WORTH_A_WORD = 1e-2  # an equation violated less, of the worst, is left out of the words
+NOTABLE_SHARE = 1e-2  # an equation violated less, of the worst, is left out of the words
 
 
 class Outcome(Enum):
@@ -196,7 +196,7 @@ class OperatingPoint:
         left = [
             f"{e.name} is off by {number(self.residuals[e.name], 4)} {e.unit}"
             for e in self.violated
-            if abs(self.residuals[e.name]) / e.size >= WORTH_A_WORD * worst
+            if abs(self.residuals[e.name]) / e.size >= NOTABLE_SHARE * worst
         ]
         return f"At the least violation {', '.join(left)}."
 

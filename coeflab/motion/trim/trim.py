@@ -235,8 +235,8 @@ def steady_motion(vehicle: Vehicle, motion: Mapping[str, float], commands: Mappi
         else:
             unknowns.append(u if motion or not commands else u.at(min(max(0.0, u.low), u.high)))
     climb = motion.get(CLIMB)
-    kept = () if climb is None else (Equation("climb beyond the one given", "m/s", speed),)
-    return SteadyMotion(vehicle, tuple(unknowns), (*_equations(vehicle, speed), *kept), climb)
+    climb_equation = () if climb is None else (Equation("climb beyond the one given", "m/s", speed),)
+    return SteadyMotion(vehicle, tuple(unknowns), (*_equations(vehicle, speed), *climb_equation), climb)
 
 
 def _motion(vehicle: Vehicle, name: str, motion: Mapping[str, float], speed: float) -> Unknown:

@@ -141,7 +141,7 @@ def uncertain(parameters: ParameterFile, used: Iterable[str]) -> Uncertain:
     return Uncertain(
         symbols=tuple(p.symbols[i] for p, i in at), values=np.array([p.values[i] for p, i in at]),
         covariance=block_diag(*(cells for chosen, cells in drawn if chosen)), sources=tuple(p.sources[i] for p, i in at),
-        held=tuple(held), statements=_said(parameters, held),
+        held=tuple(held), statements=_notes(parameters, held),
     )  # fmt: skip
 
 
@@ -206,7 +206,7 @@ def _semidefinite(cells: Array, labels: Sequence[str], column: str) -> None:
         raise input_error("motion.correlations_not_definite", column=column, low=low[0], worst=", ".join(worst))
 
 
-def _said(parameters: ParameterFile, held: Sequence[str]) -> tuple[str, ...]:
+def _notes(parameters: ParameterFile, held: Sequence[str]) -> tuple[str, ...]:
     accelerations = [
         c.symbol for c in parameters.coefficients if c.value is not None and derivative(c.symbol).text.endswith("dot")
     ]

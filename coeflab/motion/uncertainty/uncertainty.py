@@ -210,7 +210,7 @@ def uncertainty(
         others = frozenset(varied.symbols) - {str(s) for s in INDICES[name][:4]}
         importances.append(_importance(spreads[-1], values, members, varied, others, sampled, found))
     statements = (*body.statements, *plan.statements, *in_current(np.array(setup.current)), EACH)
-    statements += (*varied.statements, *_missed(setup, nominal, ended, exact, how), *_said(whole.ended[:count], ended))
+    statements += (*varied.statements, *_missed(setup, nominal, ended, exact, how), *_notes(whole.ended[:count], ended))
     if sampled:
         statements += (sampled.statement,)
     if felt:
@@ -392,7 +392,7 @@ def _importance(
     return Importance(name, known, shares(indices, sampled.groups, sampled.sources), indices.rows, tests=tests)
 
 
-def _said(ended: tuple[str, ...], how: str) -> list[str]:
+def _notes(ended: tuple[str, ...], how: str) -> list[str]:
     stopped = [e for e in ended if e != Ended.COMPLETE.value]
     out = []
     if stopped:

@@ -196,7 +196,7 @@ def acceptance() -> Acceptance:
     ]
     answer = table(found)
     tables = (PAPER.table("derivatives", derivatives), PAPER.table("levers", levers()))
-    return PAPER.acceptance(tables, (*answer.notes, *_beside()), shown=(answer,))
+    return PAPER.acceptance(tables, (*answer.notes, *_comparison_only()), shown=(answer,))
 
 
 def levers() -> tuple[Row, ...]:
@@ -215,7 +215,7 @@ def levers() -> tuple[Row, ...]:
     return tuple(rows)
 
 
-def _beside() -> tuple[str, ...]:
+def _comparison_only() -> tuple[str, ...]:
     """Vehicles whose numbers are others' estimates or CFD: no verdict."""
     words = [PAPER.text("no_shape")]
     body = read_body(Path(shipped("geometry")) / "remus100" / "body.toml")
@@ -234,6 +234,6 @@ def _beside() -> tuple[str, ...]:
     return (*words, PAPER.text("remus"), f"REMUS 100: {', '.join(parts)}.")
 
 
-def _value(made: Estimates, symbol: str) -> float:
-    among: CoefficientSet | Mapping[str, Coefficient] = made.coefficients
-    return float(among[symbol].value or 0.0) if symbol in made.coefficients else 0.0
+def _value(estimates: Estimates, symbol: str) -> float:
+    among: CoefficientSet | Mapping[str, Coefficient] = estimates.coefficients
+    return float(among[symbol].value or 0.0) if symbol in estimates.coefficients else 0.0

@@ -40,7 +40,7 @@ from coeflab.vehicle.parameter_file import ParameterFile
 PAPER = publication("flyingfish")
 
 FORCES, MOMENTS = 5e-4, 1.5e-4
-TAUGHT, TOLD = (0, 1, 8, 9), (2, 3, 4, 5, 6, 7)
+TAUGHT, PREDICTED = (0, 1, 8, 9), (2, 3, 4, 5, 6, 7)
 LEVEL, ISOLATED = (0, 3, 4), (1, 6, 9)
 CORRECTED = (79.869, -75.109, 0.051, 0.146, 2075.18, 2082.07, 624.00, 250.51)
 DERIVED = {"net_weight": 5e-5, "mass": 5e-5, "buoyancy_moment": 5e-5, "arm_length": 5e-6, "rotor_height": 5e-6}
@@ -203,7 +203,7 @@ def _predicted(fish: FlyingFish) -> ComparedTable:
     left, most = _left_by_the_taught(fish, fish.angles, fish.speeds), rounding(fish)
     rows = tuple(
         Row(f"motion {row + 1}", name, "N" if k < 3 else "N m", 0.0, float(left[row, k]), float(most[row, k]))
-        for row in TOLD
+        for row in PREDICTED
         for k, name in enumerate("XYZKMN")
     )  # fmt: skip
     return PAPER.table("predicted", rows)

@@ -228,8 +228,8 @@ def hull_laws(huuv: FiveDof, alpha: Array, beta: Array) -> dict[str, Array]:
 def pitch_slope(huuv: FiveDof) -> float:
     """Slope of C_m(alpha): what undoes the Munk moment of C_A, as the yaw slope fitted beside the chosen m_x and m_y does, and half of the rest."""
     c, added = huuv.level.constants, huuv.added
-    beside = c["n1"] - (c["my"] - c["mx"])
-    return float(added[2, 2] - added[0, 0] + beside / huuv.constants["tuned_by"])
+    viscous = c["n1"] - (c["my"] - c["mx"])
+    return float(added[2, 2] - added[0, 0] + viscous / huuv.constants["tuned_by"])
 
 
 def turning_laws(huuv: FiveDof, q: Array, r: Array) -> tuple[Array, Array]:

@@ -189,7 +189,7 @@ def thrust_rates(left: Array, right: Array, slope: float, intercept: float, arm:
 
 SPLIT = "Only the sum of rigid-body and added moment of inertia counts in a steady turn; its parts are chosen."
 LEVEL = "Only surge, sway and yaw are described: hold w, p and q."
-MADE: dict[str, Any] = {
+COMMON: dict[str, Any] = {
     "form": "polynomial of a tuned model",
     "table": "turns.csv",
     "campaign": "HUUV Fig. 17",
@@ -224,19 +224,19 @@ def parameter_file(huuv: Huuv) -> ParameterFile:
             {"variable": "v'", "low": -drift, "high": drift, "unit": "rad", "campaign": "HUUV Fig. 17"},
         ),
         "models": (
-            stated_table("C_D", {"beta": ("rad", -drift, drift)}, {"1": ((), c["d0"]), "beta^2": ((("beta", 2, False),), c["d2"])}, force, **MADE),
+            stated_table("C_D", {"beta": ("rad", -drift, drift)}, {"1": ((), c["d0"]), "beta^2": ((("beta", 2, False),), c["d2"])}, force, **COMMON),
             stated_table(
                 "C_S", {"beta": ("rad", -drift, drift)},
-                {"beta": ((("beta", 1, False),), -c["s1"]), "beta^3": ((("beta", 3, False),), -c["s3"])}, force, **MADE,
+                {"beta": ((("beta", 1, False),), -c["s1"]), "beta^3": ((("beta", 3, False),), -c["s3"])}, force, **COMMON,
             ),
             stated_table(
                 "C_n", {"beta": ("rad", -drift, drift)},
                 {"beta": ((("beta", 1, False),), c["n1"]), "beta^3": ((("beta", 3, False),), c["n3"])},
-                moment, **MADE,
+                moment, **COMMON,
             ),
             stated_table(
                 "N", {"r": ("rad/s", -rate, rate)}, {"r|r|": ((("r", 1, False), ("r", 1, True)), -c["nrr"])}, 1.0,
-                unit="N*m", **MADE,
+                unit="N*m", **COMMON,
             ),
         ),
         "added_mass": _added_mass(huuv),

@@ -211,13 +211,13 @@ def _of_drag() -> list[Row]:
     chain = model.swung(radius, length)
     rate, per = theory.SWING["rate"], 0.5 * DENSITY * model.BASIC * 2.0 * radius
     force, moment = model.drag_by_equation_21(radius, length, np.zeros(3), rate)
-    lost = (
+    loss = (
         -float(force[1] * rate * length / 2.0 + moment[2] * rate),
         -rate * float(kane.drag(chain, np.zeros(1), theory.only(6, rate, 7))[6]),
     )
     size = per * rate**3 * length**4
     rows += pair(
-        "5 moment of equation 21, swung", "power lost", "W", (size * 5.0 / 12.0, lost[0]), (size / 4.0, lost[1])
+        "5 moment of equation 21, swung", "power lost", "W", (size * 5.0 / 12.0, loss[0]), (size / 4.0, loss[1])
     )
     oblique = np.sqrt(0.5) * np.array([1.0, 1.0, 0.0])
     sides = model.drag_by_equation_21(radius, length, oblique, 0.0)[0][1], theory.towed(chain, oblique)[1]

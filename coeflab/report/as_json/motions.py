@@ -32,24 +32,24 @@ def figures(found: tuple[Figure, ...]) -> list[dict[str, Any]]:
     ]  # fmt: skip
 
 
-def simulation(made: Simulation) -> dict[str, Any]:
+def simulation(result: Simulation) -> dict[str, Any]:
     """A simulated manoeuvre without its time series."""
-    t = made.trajectory
+    t = result.trajectory
     return {
-        "vehicle": made.vehicle.name, "manoeuvre": made.manoeuvre.name, "free": list(made.vehicle.free),
-        "accelerations": accelerations(made.vehicle.water), "ended": t.ended.value, "why": t.why or None, "duration": float(t.time[-1]),
+        "vehicle": result.vehicle.name, "manoeuvre": result.manoeuvre.name, "free": list(result.vehicle.free),
+        "accelerations": accelerations(result.vehicle.water), "ended": t.ended.value, "why": t.why or None, "duration": float(t.time[-1]),
         "outside": sorted(name for name, flags in t.outside.items() if flags.any()),
-        "determined_until": None if math.isinf(made.determined) else made.determined, "undetermined": made.undetermined or None,
-        "figures": figures(made.figures), "statements": list(made.statements),
+        "determined_until": None if math.isinf(result.determined) else result.determined, "undetermined": result.undetermined or None,
+        "figures": figures(result.figures), "statements": list(result.statements),
     }  # fmt: skip
 
 
-def carried(made: Carried) -> dict[str, Any]:
+def carried(result: Carried) -> dict[str, Any]:
     """Figures in SI with intervals, shares of the variance, ranking and statements; absent values null."""
-    q = made.question
+    q = result.question
     return {
-        "vehicle": made.vehicle, "manoeuvre": q.manoeuvre, "members": q.members, "seed": q.seed,
-        "accelerations": accelerations(made.water), "motions": made.runs, "undetermined": made.undetermined or None,
+        "vehicle": result.vehicle, "manoeuvre": q.manoeuvre, "members": q.members, "seed": q.seed,
+        "accelerations": accelerations(result.water), "motions": result.runs, "undetermined": result.undetermined or None,
         "figures": [
             {
                 "name": s.figure.name, "unit": s.figure.unit, "value": s.figure.value, "status": s.figure.status,
@@ -57,7 +57,7 @@ def carried(made: Carried) -> dict[str, Any]:
                 "members_with_it": s.having, "members_beyond_the_data": s.extrapolated, "interval": s.status, "why": s.why or None,
                 "definition": s.figure.definition,
             }
-            for s in made.spreads
+            for s in result.spreads
         ],
         "shares": {
             i.figure: {
@@ -73,23 +73,23 @@ def carried(made: Carried) -> dict[str, Any]:
                     for s in i.shares
                 ],
             }
-            for i in made.importances
+            for i in result.importances
         },
-        "varied": {s: float(d) for s, d in zip(made.varied.symbols, made.varied.deviation, strict=True)},
-        "held": list(made.varied.held), "ranking": list(ranking(made)), "statements": list(made.statements),
+        "varied": {s: float(d) for s, d in zip(result.varied.symbols, result.varied.deviation, strict=True)},
+        "held": list(result.varied.held), "ranking": list(ranking(result)), "statements": list(result.statements),
     }  # fmt: skip
 
 
-def merged(made: Merged, of: Sequence[Carried]) -> dict[str, Any]:
+def merged(result: Merged, of: Sequence[Carried]) -> dict[str, Any]:
     """What was replaced, what is left, and the uncertainty of the first manoeuvre."""
 
     def one(c: Coefficient | None) -> dict[str, Any] | None:
         return None if c is None else {"value": c.value, "u95": c.u95, "status": str(c.status), "campaign": c.campaign}
 
     return {
-        "name": made.parameters.name,
-        "replaced": [{"symbol": r.symbol, "before": one(r.before), "after": one(r.after)} for r in made.replaced],
-        "estimates": [c.symbol for c in made.estimates],
-        "lengths": made.lengths or None,
+        "name": result.parameters.name,
+        "replaced": [{"symbol": r.symbol, "before": one(r.before), "after": one(r.after)} for r in result.replaced],
+        "estimates": [c.symbol for c in result.estimates],
+        "lengths": result.lengths or None,
         "uncertainty": [carried(c) for c in of],
     }

@@ -71,7 +71,7 @@ def from_shape(study: Study) -> dict[str, Any]:
             "walls": [{"wall": w.wall, "distance": w.distance, "matrix": w.matrix.tolist()} for w in hull.walls],
         },
         "at_rest": None if rest is None else {"pitch": rest[0], "roll": rest[1]}, "mesh": list(mesh_statements(shape.weighed.body)),
-        "assumed": list(shape.weighed.assumed), "said": list(shape.said), "missing": list(shape.missing),
+        "assumed": list(shape.weighed.assumed), "said": list(shape.statements), "missing": list(shape.missing),
         "estimates": [
             {
                 "symbol": k.symbol, "value": k.value, "u95": k.u95, "value_si": k.value_si, "unit_si": k.unit_si,

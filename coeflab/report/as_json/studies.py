@@ -63,11 +63,11 @@ def pooling(campaign: str, p: Pooling) -> dict[str, Any]:
             {
                 "campaign": s.campaign, "n_points": s.n_points, "intercept": s.intercept, "intercept_half_width_95": s.half_width,
                 "noise": s.noise, "rms": s.rms, "rms_alone": s.rms_alone,
-                "left_out_rms_of_range": finite(s.left_out.rms) if s.left_out.told else None,
+                "left_out_rms_of_range": finite(s.left_out.rms) if s.left_out.is_known else None,
             }
             for s in p.shares
         ],
-        "every_third_left_out_rms_of_range": finite(p.every_third.rms) if p.every_third.told else None,
+        "every_third_left_out_rms_of_range": finite(p.every_third.rms) if p.every_third.is_known else None,
         "one_law": {
             "f": finite(p.test.statistic), "restrictions": p.test.restrictions, "freedom": finite(p.test.freedom),
             "probability": finite(p.test.probability), "rejected": p.rejected,
@@ -102,12 +102,12 @@ def oscillation(campaign: str, o: Oscillation) -> dict[str, Any]:
     }  # fmt: skip
 
 
-def export(made: Export) -> dict[str, Any]:
+def export(result: Export) -> dict[str, Any]:
     """What one target makes of a parameter file; forces are X Y Z K M N, SI."""
-    loss = made.loss
+    loss = result.loss
     return {
-        "parameter_file": made.parameters, "target": made.target, "accelerations": None if loss is None else accelerations(loss.water),
-        "lossless": made.lossless, "not_held": [] if loss is None else list(loss.not_held),
+        "parameter_file": result.parameters, "target": result.target, "accelerations": None if loss is None else accelerations(loss.water),
+        "lossless": result.lossless, "not_held": [] if loss is None else list(loss.not_held),
         "lost": [] if loss is None else [{"kind": x.kind.value, "what": x.what} for x in loss.lost],
         "changes": [] if loss is None else list(loss.changes), "grid": None if loss is None else loss.grid,
         "controls": [] if loss is None else list(loss.controls), "worst_difference": None if loss is None else loss.worst.tolist(),

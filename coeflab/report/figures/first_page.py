@@ -169,7 +169,7 @@ def forest_figure(rows: Sequence[AnswerRow], columns: Sequence[str], compared: s
     level = np.arange(n, 0.0, -1.0)
     across = _reach(selected)
     legend_rows = -(-(1 + len(columns)) // 2)
-    words = "; ".join(f"{primed(r.symbol)}: {_beside(r, by, columns)}" for r, by in selected)
+    words = "; ".join(f"{primed(r.symbol)}: {_label(r, by, columns)}" for r, by in selected)
     with settings():
         names = [primed(r.symbol) for r, _ in selected]
         beyond = [
@@ -212,10 +212,10 @@ def forest_figure(rows: Sequence[AnswerRow], columns: Sequence[str], compared: s
     return Figure("answer-forest", svg, title, caption, words, (panel,))
 
 
-def _reach(kept: Sequence[tuple[AnswerRow, float]]) -> Range:
+def _reach(shown: Sequence[tuple[AnswerRow, float]]) -> Range:
     """Range of the quotients, bars included, about 1; beside others a value of open sign over itself, whose bar has an arrow, sets none."""
     ends = [1.0]
-    for r, by in [(r, by) for r, by in kept if by != r.value or abs(by) > (r.u95 or 0.0)] or kept:
+    for r, by in [(r, by) for r, by in shown if by != r.value or abs(by) > (r.u95 or 0.0)] or shown:
         ends += [p / by for p in r.published if p is not None]
         if r.value is not None:
             ends += [(r.value + k * (r.u95 or 0.0)) / by for k in (-1.0, 1.0)]
@@ -225,11 +225,11 @@ def _reach(kept: Sequence[tuple[AnswerRow, float]]) -> Range:
 
 
 def _ours(
-    axes: Axes, kept: Sequence[tuple[AnswerRow, float]], level: Array, across: Range
+    axes: Axes, shown: Sequence[tuple[AnswerRow, float]], level: Array, across: Range
 ) -> tuple[list[Any], list[Series]]:
     mine = [
         (r.value / by, (r.u95 or 0.0) / abs(by), k, r)
-        for (r, by), k in zip(kept, level, strict=True)
+        for (r, by), k in zip(shown, level, strict=True)
         if r.value is not None
     ]
     at, half, high = (np.array([m[i] for m in mine]) for i in range(3))
@@ -274,7 +274,7 @@ def share_text(share: float) -> str:
     return LARGE if share > LARGEST_SHARE else f"{share:.0f} %" if share >= 9.95 else f"{share:.1f} %"
 
 
-def _beside(r: AnswerRow, by: float, columns: Sequence[str]) -> str:
+def _label(r: AnswerRow, by: float, columns: Sequence[str]) -> str:
     ours = r.status or "no value" if r.value is None else f"ours {r.value / by:.2f}"
     if r.value is not None and r.u95:
         ours += f" +- {r.u95 / abs(by):.2f}"

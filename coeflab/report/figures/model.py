@@ -147,21 +147,21 @@ def _panel(
     aside = model.set_aside
     mine, fine, values, half = _law(model, variable, factor)
     x, y = shown_values(variable, model.x[variable][mine]), model.y[mine] * factor
-    beside, at, out = np.zeros(0), np.zeros(0), np.zeros(0, dtype=bool)
+    aside_values, at, out = np.zeros(0), np.zeros(0), np.zeros(0, dtype=bool)
     unit = f"[{response_unit(model)}]"
     if aside is not None:
         out = _alone(model, aside.x, variable)
-        beside, at = aside.y[out] * factor, shown_values(variable, aside.x[variable][out])
+        aside_values, at = aside.y[out] * factor, shown_values(variable, aside.x[variable][out])
     axes = panel(
         figure, bottom, FIELD, across=limits(x, 0.04) or (-1.0, 1.0),
-        up=limits(np.concatenate([y, values - half, values + half, beside]), 0.06) or (-1.0, 1.0), name_up=f"{name[0]}{name[1]}  {unit}",
+        up=limits(np.concatenate([y, values - half, values + half, aside_values]), 0.06) or (-1.0, 1.0), name_up=f"{name[0]}{name[1]}  {unit}",
         name_across=axis_name(variable, model), most_up=4,
     )  # fmt: skip
     draw_along(axes, model, variable, factor)
     shown = shown_values(variable, fine)
     words = (
         points("points", "points", x, model.y[mine], [f"point {model.labels[i]}" for i in np.flatnonzero(mine)]),
-        points("aside", "rejected or doubtful", at, beside / factor),
+        points("aside", "rejected or doubtful", at, aside_values / factor),
         curve("fit", "fit", shown, values / factor),
     )
     return numbers(axes, words, axis_name(variable, model), f"{name[0]}  {unit}", factor)
@@ -224,9 +224,9 @@ def residual_figure(model: FittedModel, anchor: str) -> Figure:
 
 def _measured(figure: Drawing, model: FittedModel, fitted: Array, bottom: float) -> tuple[Axes, float]:
     aside = model.set_aside
-    beside = [] if aside is None or not len(aside.y) else [aside.y, model.evaluate(aside.x)[0]]
+    aside_values = [] if aside is None or not len(aside.y) else [aside.y, model.evaluate(aside.x)[0]]
     factor, power = scale_of(model.y)
-    both = limits(np.concatenate([model.y, fitted, *beside]) * factor, 0.06) or (-1.0, 1.0)
+    both = limits(np.concatenate([model.y, fitted, *aside_values]) * factor, 0.06) or (-1.0, 1.0)
     name, unit = response_name(model), response_unit(model)
     axes = panel(
         figure, bottom, MEASURED, across=both, up=both, name_up=f"{name} measured{power}  [{unit}]",

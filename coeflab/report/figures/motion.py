@@ -23,7 +23,7 @@ from coeflab.report.notation import as_users_wrote
 FLAT = 1e-9
 STILL = 1e-12
 MOST_BODIES, CLEAR = 12, 1.6
-MOST_TOLD = 150
+MOST_POINTS = 150
 BEYOND: dict[str, Any] = {"color": COLOURS["muted"], "linewidth": 1.4, "linestyle": (0, (3, 2))}
 
 
@@ -110,7 +110,7 @@ def draw_track(
 
 def _places(trajectory: Trajectory, across: Array, up: Array, beyond: NDArray[np.bool_]) -> list[Series]:
     """Points of the track at even steps of its samples, with the time and speed at each."""
-    every = np.unique(np.linspace(0, len(across) - 1, min(len(across), MOST_TOLD)).round().astype(int))
+    every = np.unique(np.linspace(0, len(across) - 1, min(len(across), MOST_POINTS)).round().astype(int))
     out = []
     for key, name, rows in (
         ("track", "track within the data", every[~beyond[every]]),

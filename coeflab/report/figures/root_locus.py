@@ -34,7 +34,7 @@ def root_locus_figure(locus: RootLocus, name: str, anchor: str) -> Figure:
     bottom = BOTTOM + (LOWER + GAP if waves else 0.0)
     title = f"{name}: roots of straight motion in {IN_PLANE[locus.index]}"
     across = (0.0, float(locus.speed[-1]))
-    description = f"{_said('Real', locus.roots.real)}{_said('Imaginary', locus.roots.imag) if waves else ''}"
+    description = f"{_summary('Real', locus.roots.real)}{_summary('Imaginary', locus.roots.imag) if waves else ''}"
     with settings():
         figure = drawing(bottom + UPPER + 8.0 + LEGEND)
         real = np.append(locus.roots.real, 0.0)
@@ -71,6 +71,6 @@ def _series(locus: RootLocus, values: Array) -> list[Series]:
     return [curve(f"root{i}", f"root {i + 1}", locus.speed, values[:, i]) for i in range(values.shape[1])]
 
 
-def _said(part: str, values: Array) -> str:
+def _summary(part: str, values: Array) -> str:
     ends = ", ".join(f"{low:.3g} to {high:.3g}" for low, high in zip(values[0], values[-1], strict=True))
     return f"{part} parts from the slowest to the fastest speed, 1/s: {ends}. "

@@ -26,7 +26,7 @@ from coeflab.report.figures.svg import settings, svg_text
 from coeflab.report.figures.variables import (
     axis_name,
     band_in_words,
-    beside,
+    draw_set_aside,
     beyond,
     hollow,
     moving,
@@ -92,15 +92,15 @@ def _axis(name: str, unit: str, values: Array) -> Axis:
     return Axis(name, "" if unit == "-" else unit, ends, tuple(map(float, marks)), tuple(tick_texts(marks)))
 
 
-def _triangles(kept: NDArray[np.bool_]) -> NDArray[np.int64]:
+def _triangles(shown: NDArray[np.bool_]) -> NDArray[np.int64]:
     """Two a cell of the grid, where all their corners are known."""
     at = np.arange(SCENE_GRID * SCENE_GRID).reshape(SCENE_GRID, SCENE_GRID)
     a, b, c, d = (part.ravel() for part in (at[:-1, :-1], at[1:, :-1], at[1:, 1:], at[:-1, 1:]))
     both = np.vstack([np.column_stack([a, b, c]), np.column_stack([a, c, d])])
-    return both[kept[both].all(axis=1)]
+    return both[shown[both].all(axis=1)]
 
 
-def _lines(kept: NDArray[np.bool_]) -> NDArray[np.int64]:
+def _lines(shown: NDArray[np.bool_]) -> NDArray[np.int64]:
     """Every fourth line of the grid."""
     at = np.arange(SCENE_GRID * SCENE_GRID).reshape(SCENE_GRID, SCENE_GRID)
     some = slice(None, None, EVERY)
@@ -110,7 +110,7 @@ def _lines(kept: NDArray[np.bool_]) -> NDArray[np.int64]:
             np.column_stack([at[some, :-1].ravel(), at[some, 1:].ravel()]),
         ]
     )
-    return pairs[kept[pairs].all(axis=1)]
+    return pairs[shown[pairs].all(axis=1)]
 
 
 def _pairs(n: int) -> NDArray[np.int64]:
@@ -297,7 +297,7 @@ def curve_figure(model: FittedModel, anchor: str) -> Figure:
         )  # fmt: skip
         at = shown_values(variable, fine)
         handles = tagged(used(main, shown_values(variable, x), model.y * factor), "points")
-        handles += tagged(beside(main, model, variable, factor), "aside")
+        handles += tagged(draw_set_aside(main, model, variable, factor), "aside")
         handles += _curve(main, at, y * factor, half * factor, inside)
         legend(figure, handles)
         lower, below = residual_panel(figure, model, variable, across, BOTTOM, RESIDUALS)

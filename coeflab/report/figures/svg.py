@@ -159,13 +159,13 @@ def _without_bare_groups(text: str) -> str:
     """The same drawing without the groups that carry no attribute."""
     bare: list[bool] = []
 
-    def kept(tag: re.Match[str]) -> str:
+    def keep(tag: re.Match[str]) -> str:
         if tag[0].startswith("</"):
             return "" if bare.pop() else tag[0]
         bare.append(tag[0].startswith("<g>"))
         return "" if bare[-1] else tag[0]
 
-    return re.sub(r"<g>\n?|<g [^>]*[^/]>|</g>\n?", kept, text)
+    return re.sub(r"<g>\n?|<g [^>]*[^/]>|</g>\n?", keep, text)
 
 
 Align = Literal["left", "center", "right"]

@@ -106,7 +106,7 @@ def bars(found: Importance, anchor: str) -> Figure:
         name = "Sobol index" if grouped else "share of the variance"
         axes = _draw(figure, rows, height, name)
         own = "first order" if grouped else "if known exactly"
-        shown = numbers(axes, _told(rows, own, axes.get_ylim()[1] - 0.5), name, "", bars="across")
+        shown = numbers(axes, _bar_ends(rows, own, axes.get_ylim()[1] - 0.5), name, "", bars="across")
         handles: list[Any] = [Patch(color=COLOURS["a"], linewidth=0.0, label=own)]
         if grouped:
             handles.append(Patch(color=COLOURS["band"], linewidth=0.0, label="total"))
@@ -121,7 +121,7 @@ def bars(found: Importance, anchor: str) -> Figure:
     return Figure(anchor, svg, title, meant, description, (shown,))
 
 
-def _told(rows: list[Bar], own: str, top: float) -> list[Series]:
+def _bar_ends(rows: list[Bar], own: str, top: float) -> list[Series]:
     """The ends of the bars, the upper row first."""
     at = top - np.arange(len(rows))
     spans = ["" if a == b else f", 95 % {a:.2f} to {b:.2f}" for _, _, (a, b), _ in rows]

@@ -129,7 +129,7 @@ def hollow(axes: Axes, x: Array, y: Array) -> list[Any]:
     return drawn
 
 
-def beside(axes: Axes, model: FittedModel, variable: str, factor: float) -> list[Any]:
+def draw_set_aside(axes: Axes, model: FittedModel, variable: str, factor: float) -> list[Any]:
     """The rejected and doubtful points over a variable, within its range; none where they are not known."""
     aside = model.set_aside
     if aside is None or variable not in aside.x:

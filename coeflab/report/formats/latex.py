@@ -13,7 +13,19 @@ from coeflab.core.table import ABSENT, Table, percent, plus_minus
 from coeflab.core.text.bounded import own_text
 from coeflab.core.version import VERSION
 from coeflab.report.document import Answer, AnswerRow, Document, Section
-from coeflab.report.notation import DOT, GREEK, Command, Factor, Raised, Run, cell_runs, keeping, kept, runs, unit_runs
+from coeflab.report.notation import (
+    DOT,
+    GREEK,
+    Command,
+    Factor,
+    Raised,
+    Run,
+    cell_runs,
+    keeping,
+    verbatim,
+    runs,
+    unit_runs,
+)
 from coeflab.report.printable import shortened, visible
 
 summary = "one LaTeX file with every table: booktabs, siunitx, captions, notes; and BibTeX of the works used"
@@ -238,12 +250,12 @@ def _cell(text: str, unit: bool, left: bool) -> str:
         return rf"\num{{{value[1]}}}" + (rf" $\pm$ \num{{{value[2]}}}" if value[2] else "")
     if unit and LITERAL.fullmatch(text):
         return r"\unit{" + text.replace("*", ".") + "}"
-    return _set(unit_runs(text) if unit else cell_runs(text, kept()))
+    return _set(unit_runs(text) if unit else cell_runs(text, verbatim()))
 
 
 def tex(text: str) -> str:
     """A text as LaTeX; what a user wrote is set letter by letter."""
-    return _set(runs(" ".join(text.split()), kept()))
+    return _set(runs(" ".join(text.split()), verbatim()))
 
 
 def _set(pieces: Iterable[Run]) -> str:
@@ -251,7 +263,7 @@ def _set(pieces: Iterable[Run]) -> str:
     out: list[Piece] = []
     for piece in (p for run in pieces for p in _pieces(run)):
         if out and out[-1].math is piece.math:
-            joined = _beside(out[-1].tex, piece.tex) if piece.math else out[-1].tex + piece.tex
+            joined = _joined(out[-1].tex, piece.tex) if piece.math else out[-1].tex + piece.tex
             out[-1] = Piece(piece.math, joined)
         else:
             out.append(piece)
@@ -284,11 +296,11 @@ def _formula(text: str) -> str:
         if ch == DOT:
             out = f"{out[:-1]}\\dot{{{out[-1:]}}}"
         else:
-            out = _beside(out, IN_MATH.get(ch) or SPECIAL.get(ch, ch if ch.isascii() else f"\\mbox{{U+{ord(ch):04X}}}"))
+            out = _joined(out, IN_MATH.get(ch) or SPECIAL.get(ch, ch if ch.isascii() else f"\\mbox{{U+{ord(ch):04X}}}"))
     return out
 
 
-def _beside(formula: str, more: str) -> str:
+def _joined(formula: str, more: str) -> str:
     """Two formulas as one; a command's name ends before a letter, and no power has a power."""
     if more.startswith("^") and re.search(r"\^\{[^{}]*\}$", formula):
         return formula + "{}" + more

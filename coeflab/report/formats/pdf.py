@@ -17,7 +17,7 @@ from coeflab.core.text.bounded import own_bytes
 from coeflab.core.version import VERSION
 from coeflab.report.document import Answer, AnswerRow, Document, Figure, Section
 from coeflab.report.figures.svg import plain, size_of
-from coeflab.report.notation import Command, Raised, Run, cell_runs, keeping, kept, runs, unit_runs
+from coeflab.report.notation import Command, Raised, Run, cell_runs, keeping, verbatim, runs, unit_runs
 from coeflab.report.printable import BREAK, CLOCK, WORD, breakable, glyphs, shortened
 
 summary = "one PDF to print and to keep: typeset tables, mathematics and vector figures"
@@ -251,12 +251,12 @@ def _lettered(table: Table) -> Table:
 
 def _with_room(table: Table) -> Table:
     """Without columns that say one thing in every row, where another has to fold; a note says it once."""
-    kept_whole = [i for i in range(len(table.headers)) if i == 0 or not says_one(table, i)]
-    if len(kept_whole) == len(table.headers) or not any(len(c) > WHOLE for row in table.rows for c in row):
+    complete = [i for i in range(len(table.headers)) if i == 0 or not says_one(table, i)]
+    if len(complete) == len(table.headers) or not any(len(c) > WHOLE for row in table.rows for c in row):
         return table
-    once = [i for i in range(len(table.headers)) if i not in kept_whole]
+    once = [i for i in range(len(table.headers)) if i not in complete]
     more = (f"{table.headers[i]}, in every row: {table.rows[0][i] or 'none'}." for i in once)
-    return replace(table.only(kept_whole), notes=(*table.notes, *more))
+    return replace(table.only(complete), notes=(*table.notes, *more))
 
 
 def _letters(table: Table) -> int:
@@ -283,12 +283,12 @@ def _word(table: Table, column: int) -> str:
 
 
 def _cell(text: str, unit: bool, folds: bool) -> list[Any]:
-    pieces = [_piece(p) for p in (unit_runs(text) if unit else cell_runs(text, kept()))]
+    pieces = [_piece(p) for p in (unit_runs(text) if unit else cell_runs(text, verbatim()))]
     return _with_units(pieces) if folds else [p.replace(" ", "\u00a0") if isinstance(p, str) else p for p in pieces]
 
 
 def _text(text: str) -> list[Any]:
-    return _with_units([_piece(p) for p in runs(text, kept())])
+    return _with_units([_piece(p) for p in runs(text, verbatim())])
 
 
 def _with_units(pieces: list[Any]) -> list[Any]:

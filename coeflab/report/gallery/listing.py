@@ -100,7 +100,7 @@ class Valued:
     source: str = ""
 
     @property
-    def said(self) -> str:
+    def value_text(self) -> str:
         """Value and U95, or why there is none."""
         return self.status if self.value is None else plus_minus(self.value, self.u95)
 
@@ -360,7 +360,7 @@ def _report(path: Path, name: str) -> ReportEntry | None:
         if not head.startswith(b"%PDF-"):
             return ReportEntry(name, fault="found no PDF; expected one by its name.")
         return ReportEntry(name, keys=(("PDF", key_of(name)),))
-    given, text = _Said(), head.decode("utf-8", "replace")
+    given, text = _ReportHead(), head.decode("utf-8", "replace")
     given.feed(text)
     if given.generator != "coeflab":
         own = path.name in OWN_REPORTS
@@ -441,7 +441,7 @@ def fault(why: CoeflabError, path: Path) -> str:
     return shortened(text.replace(str(path), path.name), LONGEST)
 
 
-class _Said(HTMLParser):
+class _ReportHead(HTMLParser):
     """What the head of a report says of itself."""
 
     def __init__(self) -> None:

@@ -122,10 +122,10 @@ def _drawn(
         seen = np.where(np.isnan(x), BEYOND, np.clip(x, -BEYOND, BEYOND))
         tagged(axes.plot(seen[mine], y[mine], linestyle="none", clip_on=False, zorder=3, **look), key)
     words = mine & (np.abs(x) <= BEYOND)
-    return points(key, name, x[words], y[words], [_told(r) for r, yes in zip(rows, words, strict=True) if yes])
+    return points(key, name, x[words], y[words], [_summary(r) for r, yes in zip(rows, words, strict=True) if yes])
 
 
-def _told(r: Compared) -> str:
+def _summary(r: Compared) -> str:
     unit = "" if r.unit == "1" else f" {r.unit}"
     found = "no number" if r.found is None else f"{r.found:.6g}{unit}"
     against = f"{'at most ' if r.at_most else ''}{r.against:.6g}{unit}"

@@ -83,7 +83,7 @@ def particulars_table(shape: FromShape, hull: AddedMass | None = None) -> Table:
     return table_of(
         "estimates.particulars_table",
         rows,
-        shape.said,
+        shape.statements,
         name=shape.weighed.body.name,
         datum=datum,
         reference_point=_three(shape.weighed.body.reference_point),
@@ -126,7 +126,7 @@ def estimates_table(
         (
             c.symbol, *with_u95(c.value, c.u95), percent(c.u95, c.value), _status(c),
             *((f"{100.0 * shares[c.symbol]:.0f} %" if c.symbol in shares else "",) if main is not None else ()),
-            *((_made_of(c, parts),) if parts is not None else ()),
+            *((_contributions(c, parts),) if parts is not None else ()),
         )
         for c in sorted(valued, key=lambda c: (order.get(c.symbol, len(order)), len(derivative(c.symbol).factors)))
     )  # fmt: skip
@@ -155,7 +155,7 @@ def _status(c: Coefficient) -> str:
     return "estimate" if c.status == "estimate" else c.campaign or str(c.status).replace("_", " ")
 
 
-def _made_of(c: Coefficient, parts: Mapping[str, Mapping[str, float]]) -> str:
+def _contributions(c: Coefficient, parts: Mapping[str, Mapping[str, float]]) -> str:
     """The kinds of contributions with their shares, the largest first."""
     if c.status != "estimate" or not c.value:
         return ""
@@ -203,13 +203,13 @@ def _degrees(angle: float | str) -> str:
     return f"{np.degrees(float(angle)):.3g} deg"
 
 
-def _how(made: Simulation) -> str:
+def _how(result: Simulation) -> str:
     """From which speed and by what a manoeuvre goes, for example ``15 deg of rudder from 2 m/s, dr = -15 deg``."""
-    speed = float(made.manoeuvre.velocity[0])
-    if made.manoeuvre.name == "stop":
-        down = made.manoeuvre.phases[0].until
+    speed = float(result.manoeuvre.velocity[0])
+    if result.manoeuvre.name == "stop":
+        down = result.manoeuvre.phases[0].until
         return f"thrust off at {speed:g} m/s, until {down.value if down is not None else 0.0:g} m/s are left"
-    angle = made.manoeuvre.phases[0].orders.get("dr", 0.0)
+    angle = result.manoeuvre.phases[0].orders.get("dr", 0.0)
     if not angle:
         return f"unequal thrusters from {speed:g} m/s"
     return f"{_degrees(abs(angle))} of rudder from {speed:g} m/s, dr = {_degrees(angle)}"
@@ -300,7 +300,7 @@ def answer_of_shape(study: Study, *, drawn: bool = True) -> Answer:
         sentence(study),
         rows=tuple(rows),
         chips=chips,
-        notes=(by, *(f"{s[:1].upper()}{s[1:]}." for s in shape.said[:2])),
+        notes=(by, *(f"{s[:1].upper()}{s[1:]}." for s in shape.statements[:2])),
     )
     if not drawn:
         return result
@@ -346,7 +346,7 @@ def _exports(study: Study) -> Chip:
 def verdict_of_shape(study: Study) -> Section:
     """What comes out of a shape alone, in short paragraphs."""
     shape = _shape(study)
-    text = [sentence(study), *(f"{s[:1].upper()}{s[1:]}." for s in shape.said)]
+    text = [sentence(study), *(f"{s[:1].upper()}{s[1:]}." for s in shape.statements)]
     missing = (Topic("Missing", tuple(f"{m[:1].upper()}{m[1:]}." for m in shape.missing)),) if shape.missing else ()
     return Section("verdict", "Verdict", tuple(text), topics=missing)
 
@@ -394,10 +394,10 @@ def _methods(shape: FromShape) -> Table:
     return table_of("estimates.methods", rows)
 
 
-def merged_table(made: Merged) -> Table:
+def merged_table(result: Merged) -> Table:
     """What was replaced: before, after, and how far apart they are in the U95 of both."""
     rows = []
-    for r in made.replaced:
+    for r in result.replaced:
         before, after = (_value(c) for c in (r.before, r.after))
         apart = ABSENT
         if (
@@ -410,8 +410,8 @@ def merged_table(made: Merged) -> Table:
         ):
             apart = f"{abs(r.after.value - r.before.value) / np.hypot(r.before.u95, r.after.u95):.2f}"
         rows.append((r.symbol, before, after if r.after else "left out", apart))
-    left = ", ".join(c.symbol for c in made.estimates) or "none"
-    return table_of("estimates.merged_table", rows, name=made.parameters.name, left=left)
+    left = ", ".join(c.symbol for c in result.estimates) or "none"
+    return table_of("estimates.merged_table", rows, name=result.parameters.name, left=left)
 
 
 def _value(c: Coefficient | None) -> str:
@@ -421,10 +421,10 @@ def _value(c: Coefficient | None) -> str:
     return f"{value} +- {u95}" if c.u95 else value
 
 
-def answer_of_merge(made: Merged, moves: Sequence[Simulation], carried: Sequence[Carried]) -> Answer:
+def answer_of_merge(result: Merged, moves: Sequence[Simulation], carried: Sequence[Carried]) -> Answer:
     """The first page of a merge: six slopes beside the estimates that they replace, and what is still an estimate."""
-    p, left = made.parameters, len(made.estimates)
-    before = {r.symbol.removesuffix("'"): r.before.value for r in made.replaced if r.before is not None}
+    p, left = result.parameters, len(result.estimates)
+    before = {r.symbol.removesuffix("'"): r.before.value for r in result.replaced if r.before is not None}
     rows = []
     for symbol in SIX:
         c = p.coefficient(symbol)
@@ -432,7 +432,7 @@ def answer_of_merge(made: Merged, moves: Sequence[Simulation], carried: Sequence
         source = "" if c is None else _status(c)
         status = "no estimate" if value is None else "" if u95 else "no U95"
         rows.append(AnswerRow(symbol, value, u95, status, source, (before.get(symbol),), anchor="coefficients"))
-    given = sum(r.after is not None for r in made.replaced)
+    given = sum(r.after is not None for r in result.replaced)
     turn = interval_in_words(carried, p.conditions.speed).removesuffix(", estimate")
     words = (
         f"{p.name}: {counted(given, 'number')} replaced, {counted(left, 'estimate')} left{f'; {turn}' if turn else ''}."
@@ -448,18 +448,18 @@ def answer_of_merge(made: Merged, moves: Sequence[Simulation], carried: Sequence
     return Answer(words[:LONGEST], (BEFORE,), "", tuple(rows), chips, left_figure, right, None, (note,))
 
 
-def replaced_section(made: Merged, carried: Sequence[Carried]) -> Section:
+def replaced_section(result: Merged, carried: Sequence[Carried]) -> Section:
     """What was replaced, which estimates remain, and what they contribute to the uncertainty of the turn."""
-    figure = shares_figure(made.parameters, carried, "shares")
+    figure = shares_figure(result.parameters, carried, "shares")
     main = main_spread(carried)
     text = [
         text_of("estimates.estimated"),
-        *([f"{made.lengths[:1].upper()}{made.lengths[1:]}."] if made.lengths else []),
+        *([f"{result.lengths[:1].upper()}{result.lengths[1:]}."] if result.lengths else []),
     ]
     if main is not None:
-        estimated = {c.symbol for c in made.estimates}
+        estimated = {c.symbol for c in result.estimates}
         own = [(symbol, v) for symbol, v in main[1].known if symbol in estimated]
-        words = interval_in_words(carried, made.parameters.conditions.speed).removesuffix(", estimate")
+        words = interval_in_words(carried, result.parameters.conditions.speed).removesuffix(", estimate")
         which = (
             f"Of the estimates still in it {listed([symbol for symbol, _ in own])} contribute, the largest "
             f"{100.0 * max(v for _, v in own):.0f} % of its variance."
@@ -469,4 +469,4 @@ def replaced_section(made: Merged, carried: Sequence[Carried]) -> Section:
         text.append(f"{words[:1].upper()}{words[1:]}. {which}")
         text.append(text_of("estimates.shares"))
     return Section("coefficients", "Estimates and what replaced them", tuple(text),
-                   (merged_table(made), estimates_table(made.parameters, carried)), (figure,) if figure else ())  # fmt: skip
+                   (merged_table(result), estimates_table(result.parameters, carried)), (figure,) if figure else ())  # fmt: skip

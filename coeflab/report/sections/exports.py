@@ -82,28 +82,30 @@ def summary(study: Study) -> Table:
     return table_of("exports.summary", rows, notes)
 
 
-def _accelerations(made: Export) -> str:
-    return ABSENT if made.loss is None else made.loss.water.used
+def _accelerations(result: Export) -> str:
+    return ABSENT if result.loss is None else result.loss.water.used
 
 
-def _verdict(made: Export) -> str:
-    if made.loss is None:
+def _verdict(result: Export) -> str:
+    if result.loss is None:
         return "none: tables of the file's own values"
-    if made.lossless:
+    if result.lossless:
         return "none"
-    return f"accepted: {loss_tables.counted(made.loss) or 'force or acceleration differs'}"
+    return f"accepted: {loss_tables.counted(result.loss) or 'force or acceleration differs'}"
 
 
-def _worst(made: Export) -> str:
-    if made.loss is None:
+def _worst(result: Export) -> str:
+    if result.loss is None:
         return ABSENT
-    name, worst = made.loss.furthest
-    small = made.loss.too_small
+    name, worst = result.loss.furthest
+    small = result.loss.too_small
     if name not in small:
         return f"{loss_tables.percent(worst)} ({name})" if worst > LOSSLESS else loss_tables.percent(worst)
-    shares = {c: float(x) for c, x in zip(COMPONENTS, np.nan_to_num(made.loss.relative), strict=True) if c not in small}
-    if made.loss.accelerations is not None:
-        i, share = made.loss.accelerations.furthest
+    shares = {
+        c: float(x) for c, x in zip(COMPONENTS, np.nan_to_num(result.loss.relative), strict=True) if c not in small
+    }
+    if result.loss.accelerations is not None:
+        i, share = result.loss.accelerations.furthest
         shares[f"d{MOTIONS[i]}/dt"] = share
     name = max(shares, key=lambda c: shares[c])
     rest = (
@@ -114,6 +116,6 @@ def _worst(made: Export) -> str:
     return f"{rest}; {', '.join(small)} too small to judge"
 
 
-def _place(made: Export) -> str:
-    names = ", ".join(n for n in sorted(made.files) if made.loss is None or not n.endswith(".loss.txt"))
-    return f"{made.folder}/: {names}" if made.folder else names
+def _place(result: Export) -> str:
+    names = ", ".join(n for n in sorted(result.files) if result.loss is None or not n.endswith(".loss.txt"))
+    return f"{result.folder}/: {names}" if result.folder else names

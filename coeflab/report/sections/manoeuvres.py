@@ -55,37 +55,37 @@ def _drawn(study: Study) -> dict[str, int]:
     }
 
 
-def _stated_rates(made: Simulation, parameters: ParameterFile | None) -> str:
+def _stated_rates(result: Simulation, parameters: ParameterFile | None) -> str:
     """Which rotary derivatives of a motion that no data cover are from literature, a sentence; empty where none is."""
-    covered = {c.variable.removesuffix("'") for c in made.vehicle.covered}
-    wanted = [f"{c}{r}" for r, components in (("r", "YN"), ("q", "ZM")) if r in made.vehicle.free for c in components]
+    covered = {c.variable.removesuffix("'") for c in result.vehicle.covered}
+    wanted = [f"{c}{r}" for r, components in (("r", "YN"), ("q", "ZM")) if r in result.vehicle.free for c in components]
     found = [parameters.coefficient(s) for s in wanted if s[-1] not in covered] if parameters else []
     stated = [primed(c.symbol) for c in found if c is not None and c.origin == "literature" and c.value is not None]
     return f" {listed(stated)} are published values, not fits." if stated else ""
 
 
-def _manoeuvre(made: Simulation, anchor: str, parameters: ParameterFile | None) -> Section:
+def _manoeuvre(result: Simulation, anchor: str, parameters: ParameterFile | None) -> Section:
     """Its figures and two drawings; in the appendix what was assumed, the other drawings, and figures without any value."""
-    name = made.manoeuvre.name.replace("_", " ")
-    title = f"{name[:1].upper()}{name[1:]} of {made.vehicle.name}"
+    name = result.manoeuvre.name.replace("_", " ")
+    title = f"{name[:1].upper()}{name[1:]} of {result.vehicle.name}"
     text = []
-    if made.undetermined:
+    if result.undetermined:
         text.append(
-            f"Nothing is drawn: the data do not support this motion. {made.undetermined}{_stated_rates(made, parameters)}"
+            f"Nothing is drawn: the data do not support this motion. {result.undetermined}{_stated_rates(result, parameters)}"
         )
-    if made.trajectory.why:
-        text.append(f"The motion could not be computed to its end: {made.trajectory.why}")
-    length = made.vehicle.length
-    drawn = motion_figures(made.trajectory.until(made.determined), anchor, length, title)
+    if result.trajectory.why:
+        text.append(f"The motion could not be computed to its end: {result.trajectory.why}")
+    length = result.vehicle.length
+    drawn = motion_figures(result.trajectory.until(result.determined), anchor, length, title)
     shown = tuple(f for f in drawn if f.anchor.removeprefix(f"{anchor}-") in SHOWN) or drawn[:2]
-    table = (figure_table(made.figures, title, length),)
-    is_empty = bool(text) and all(f.value is None for f in made.figures)
+    table = (figure_table(result.figures, title, length),)
+    is_empty = bool(text) and all(f.value is None for f in result.figures)
     if is_empty:
-        text.append(f"No value: {listed([f.name for f in made.figures])}.")
+        text.append(f"No value: {listed([f.name for f in result.figures])}.")
     more = Section(
         f"{anchor}-more",
         "Assumed and found",
-        tuple(f"{s[:1].upper()}{s[1:]}." for s in made.statements),
+        tuple(f"{s[:1].upper()}{s[1:]}." for s in result.statements),
         table if is_empty else (),
         figures=tuple(f for f in drawn if f not in shown),
         appendix=True,

@@ -118,8 +118,8 @@ def from_literature(parameters: ParameterFile, index: str) -> list[str]:
 def _value(d: Derived) -> str:
     if d.result is None:
         return f"{d.name} = {d.value:.3g}"
-    beside = d.limits and d.represented
-    skewed = f"; Monte Carlo {number(d.result.low, 3)} to {number(d.result.high, 3)}" if beside else ""
+    extended = d.limits and d.represented
+    skewed = f"; Monte Carlo {number(d.result.low, 3)} to {number(d.result.high, 3)}" if extended else ""
     return f"{d.name} = {d.in_words}{skewed}"
 
 
@@ -167,8 +167,8 @@ def stability_sections(study: Study) -> tuple[Section, ...]:
         notes += [NO_ADDED_MASS] * any(NOT_KNOWN in row[4] for row in roots)
         notes += [DRAWN_TEXT] * any(row[5] != ABSENT for row in roots)
         tables.append(Table(at, heads, tuple(roots), tuple(notes), frozenset({0, 1, 2, 4, 5})))
-    made_of = _made_of(study, {(row[0], row[1]) for row in rows if row[2] != ABSENT})
-    used = (*((made_of,) if made_of.rows else ()), *mass_table(study))
+    inputs_table_ = _inputs_table(study, {(row[0], row[1]) for row in rows if row[2] != ABSENT})
+    used = (*((inputs_table_,) if inputs_table_.rows else ()), *mass_table(study))
     mass = Section("mass-used", "What the indices are computed from", tables=used, appendix=True)
     given = {row[1] for row in rows}
     also = [
@@ -244,17 +244,17 @@ def _shown(rows: list[tuple[str, ...]], study: Study) -> Table:
     if not any(value for value, _ in printed):
         return Table("Standard criteria", headers, tuple(rows), (), frozenset({0, 1, 4, 5}))
     notes = tuple(dict.fromkeys(f"published: {source}" for _, source in printed if source))
-    beside = [(*row[:4], value or ABSENT, *row[4:]) for row, (value, _) in zip(rows, printed, strict=True)]
+    extended = [(*row[:4], value or ABSENT, *row[4:]) for row, (value, _) in zip(rows, printed, strict=True)]
     words = (
         "published: the index that the source prints. We do not judge ours by it, as ours uses our own Yv', Nv', Zw' or Mw'.",
         *notes,
     )
     return Table(
-        "Standard criteria", (*headers[:4], "published", *headers[4:]), tuple(beside), words, frozenset({0, 1, 5, 6})
+        "Standard criteria", (*headers[:4], "published", *headers[4:]), tuple(extended), words, frozenset({0, 1, 5, 6})
     )
 
 
-def _made_of(study: Study, given: set[tuple[str, str]]) -> Table:
+def _inputs_table(study: Study, given: set[tuple[str, str]]) -> Table:
     """The numbers that the indices are computed from, a row an index, five digits, with their sources."""
     rows = []
     for p in study.parameter_files.values():

@@ -153,7 +153,7 @@ def near_walls(found: tuple[AddedMass, ...]) -> Table:
     return Table(f"{far.body}: added mass near a wall", headers, tuple(rows), notes)
 
 
-def near_walls_kept(far: AddedMass) -> Table:
+def near_walls_table(far: AddedMass) -> Table:
     """The table of a parameter file: diagonal entries at distances from a wall, over those far from it."""
     free = np.diag(far.matrix)
     rows = []
@@ -218,10 +218,10 @@ def primes(found: Triangulation) -> Table:
         values = [r.primed(symbol, by, found.density) if _settled(r, symbol) else 0.0 for r in found.results]
         cells = [coefficient(v) if v else "0" for v in values]
         if measured:
-            beside = measured.get(symbol)
-            gaps = [ABSENT if beside is None else _gap(v, beside.bounds) for v in values]
+            measured_value = measured.get(symbol)
+            gaps = [ABSENT if measured_value is None else _gap(v, measured_value.bounds) for v in values]
             cells = [c for pair in zip(cells, gaps) for c in pair]
-            cells.append(ABSENT if beside is None else beside.printed)
+            cells.append(ABSENT if measured_value is None else measured_value.printed)
         rows.append((f"{symbol}'", *cells))
     headers: list[str] = ["prime"]
     for r in found.results:

@@ -11,7 +11,7 @@ from coeflab.core.provenance import work
 from coeflab.core.table import ABSENT, Table, as_printed, coefficient, percent, plus_minus, with_u95
 from coeflab.core.texts import remark
 from coeflab.core.wording import in_sentences, listed
-from coeflab.law.coefficient import SAID, Status
+from coeflab.law.coefficient import NAMED_STATUSES, Status
 from coeflab.law.symbols import ANGLE_NAMES, primed
 from coeflab.report.tables import nouns as noun_tables
 from coeflab.report.tables.results import NO_DATA
@@ -73,17 +73,19 @@ def side_by_side(study: Study) -> Table:
         dict.fromkeys((c.reference, c.reading) for c in study.comparisons if c.relation is not Relation.RE_ANALYSIS)
     )
     twice = {name for name, _ in columns if sum(n == name for n, _ in columns) > 1}
-    beside: dict[tuple[str | None, str], dict[tuple[str, str], str]] = {}
+    published_by: dict[tuple[str | None, str], dict[tuple[str, str], str]] = {}
     for result in study.comparisons:
         key = (result.coefficient.campaign, result.coefficient.symbol)
-        beside.setdefault(key, {})[result.reference, result.reading] = result.shown or as_printed(result.published)
+        published_by.setdefault(key, {})[result.reference, result.reading] = result.shown or as_printed(
+            result.published
+        )
     rows = []
     quoted = {r.body for r in study.references if r.relation is Relation.QUOTED}
     for symbol in study.plan.wanted:
         for c in study.coefficients:
             if c.symbol != symbol or not columns or c.body not in quoted:
                 continue
-            published = beside.get((c.campaign, c.symbol), {})
+            published = published_by.get((c.campaign, c.symbol), {})
             rows.append(
                 (
                     primed(symbol),
@@ -201,7 +203,7 @@ def by_campaign(study: Study) -> Table:
             if c is None or c.value is None:
                 cells.append(NO_DATA if c is None or c.status is Status.NO_TABLE else noun_tables.without_value(c))
             else:
-                without = f", {c.status.replace('_', ' ')}" if c.status in SAID else ""
+                without = f", {c.status.replace('_', ' ')}" if c.status in NAMED_STATUSES else ""
                 cells.append(plus_minus(c.value, c.u95) + without)
         rows.append((primed(symbol), *cells))
     bodies = {f.campaign: f.body for f in study.fits}

@@ -87,7 +87,7 @@ def schedule_table(speeds: Sequence[float], trims: Sequence[Trim], models: Seque
             ]
         mode = (_eigenvalue(model.modes[0]), _parts(model.modes[0])) if model else (ABSENT, found.point.outcome.value)
         rows.append((number(speed), *cells, *mode))
-    told = collected(
+    notes_at = collected(
         (words, number(speed))
         for speed, found in zip(speeds, trims, strict=True)
         for words in (*found.point.doubts(), *found.point.statements)
@@ -97,8 +97,8 @@ def schedule_table(speeds: Sequence[float], trims: Sequence[Trim], models: Seque
         for s, t in zip(speeds, trims, strict=True)
         if t.solved and not t.depth_is_kept and t.motion.climb is None
     ]:
-        told["Depth is not kept. climb = 0 (--climb 0) asks for a motion that keeps it."] = rising
-    notes = tuple(w if len(at) == len(speeds) else f"At {listed(at)} m/s: {w}" for w, at in told.items())
+        notes_at["Depth is not kept. climb = 0 (--climb 0) asks for a motion that keeps it."] = rising
+    notes = tuple(w if len(at) == len(speeds) else f"At {listed(at)} m/s: {w}" for w, at in notes_at.items())
     headers = (
         "u [m/s]",
         *(f"{u.name} [{u.shown(0.0).partition(' ')[2]}]" for u in commands),

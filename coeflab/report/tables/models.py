@@ -162,7 +162,7 @@ def _rows(p: Pooling) -> list[tuple[str, ...]]:
 
 
 def _share(seen: OutOfSample) -> str:
-    return f"{100.0 * seen.rms:.2f} %" if seen.told else NOT_AVAILABLE
+    return f"{100.0 * seen.rms:.2f} %" if seen.is_known else NOT_AVAILABLE
 
 
 ANGLES = ("alpha", "beta", *CONTROLS)

@@ -9,7 +9,7 @@ import numpy as np
 
 from coeflab.core.table import ABSENT, Table, number, percent, plus_minus, probability, with_u95
 from coeflab.core.wording import finite
-from coeflab.fits.planar_motion import beside_steady
+from coeflab.fits.planar_motion import against_steady
 from coeflab.law.symbols import primed
 from coeflab.report.texts import table_of, text_of, texts_of
 
@@ -39,7 +39,7 @@ def headline(fit: FitResult) -> str:
 def explained(fit: FitResult, others: Sequence[FitResult] = ()) -> Table:
     """Damping of the run of the largest amplitude against zero amplitude and against steady laws of the same body."""
     own = [o.explained() for o in fit.oscillations]
-    against = [*own, *beside_steady(fit, others)]
+    against = [*own, *against_steady(fit, others)]
     rows = tuple(_explained(e) for e in against if e.against or np.isfinite(e.by_amplitude))
     notes = texts_of("oscillations.explained_notes", own=OWN) + (
         texts_of("oscillations.steady") if len(against) > len(own) else ()

@@ -34,7 +34,7 @@ def limits(column: RawColumn) -> str:
     return f"{out}, {blank} blank" if blank else out
 
 
-def columns(raw: RawTable, proposed: Sequence[Proposal], said: Mapping[str, ColumnMap] | None = None) -> Table:
+def columns(raw: RawTable, proposed: Sequence[Proposal], known: Mapping[str, ColumnMap] | None = None) -> Table:
     """Every column that is used, with its unit, range and what it is, or may be.
 
     Parameters
@@ -42,12 +42,12 @@ def columns(raw: RawTable, proposed: Sequence[Proposal], said: Mapping[str, Colu
     raw : RawTable
     proposed : sequence of Proposal
         One a column.
-    said : mapping of str to ColumnMap, optional
+    known : mapping of str to ColumnMap, optional
         What is settled.
     """
     rows, unused = [], []
     for column, proposal in zip(raw.columns, proposed, strict=True):
-        settled = next((str(said[n]) for n in (column.name, *known_as(column)) if said and n in said), "")
+        settled = next((str(known[n]) for n in (column.name, *known_as(column)) if known and n in known), "")
         text = settled or (f"{proposal.text}?" if proposal.whole and not proposal.certain else proposal.text)
         if text == "ignore" and len(raw.columns) > MANY:
             unused.append(column.name)
@@ -67,8 +67,8 @@ def by_format(raw: RawTable, proposed: Sequence[Proposal]) -> str:
         if one.text not in ("ignore", "label", "uncertain", "point")
     ]
     zeros = [c.name for c in used if not np.any(np.nan_to_num(c.values))]
-    said = f"{len(raw)} rows of {', '.join(c.name for c in used if c.name not in zeros)}"
-    return f"{said}; zeros throughout: {', '.join(zeros)}." if zeros else f"{said}."
+    known = f"{len(raw)} rows of {', '.join(c.name for c in used if c.name not in zeros)}"
+    return f"{known}; zeros throughout: {', '.join(zeros)}." if zeros else f"{known}."
 
 
 def of_run(run: Run) -> tuple[Table, ...]:

@@ -182,13 +182,13 @@ def primed_about(study: Study) -> str:
     return " ".join([*lines, *halves(study)])
 
 
-def lost_by_move(study: Study) -> tuple[str, ...]:
+def undetermined_by_move(study: Study) -> tuple[str, ...]:
     """Slopes that a campaign gives about another point than the study's, and what their move lacks; a sentence a campaign."""
     out = []
     for f in study.fits:
-        lost = [s.symbol for s in f.sweeps if s.value is not None and f.coefficients[s.symbol].value is None]
+        undetermined = [s.symbol for s in f.sweeps if s.value is not None and f.coefficients[s.symbol].value is None]
         own = [t for t in study.tables if t.campaign == f.campaign]
-        slopes = [s for s in lost if s[1:] in ("r", "q")]
+        slopes = [s for s in undetermined if s[1:] in ("r", "q")]
         if not slopes or not own or not (shift := arm_shift(own)):
             continue
         turning = {s[1:] for s in slopes}

@@ -58,7 +58,7 @@ def declared(tables: Sequence[ForceTable]) -> Table:
     )
 
 
-def made_from(study: Study) -> Table:
+def inputs_table(study: Study) -> Table:
     """The files that tables were made from, as their campaigns state them; they are no inputs of the study."""
     rows = tuple(
         (t.name, t.source.citation, t.declared.source_sha256)

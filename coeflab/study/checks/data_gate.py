@@ -89,12 +89,12 @@ def _largest(table: ForceTable) -> dict[str, float]:
     return {c: float(size.max(initial=0.0)) for c, size in sizes.items()}
 
 
-def _screened(table: ForceTable, kept: NDArray[np.bool_], limit: float) -> dict[tuple[int, str], _Cell]:
+def _screened(table: ForceTable, selected: NDArray[np.bool_], limit: float) -> dict[tuple[int, str], _Cell]:
     """Every reading that a sweep holds, by row and component; of several sweeps the one that predicts it best."""
     cells: dict[tuple[int, str], _Cell] = {}
     length = table.scaling.length
     zero = ZEROS * max(_largest(table).values(), default=0.0)
-    for sweep in sweeps_of(table, kept):
+    for sweep in sweeps_of(table, selected):
         for component, usable in table.usable.items():
             inside = usable[sweep.rows]
             x = np.ascontiguousarray(sweep.x[inside], dtype=float)
@@ -296,20 +296,22 @@ def _curvatures(table: ForceTable, cells: dict[tuple[int, str], _Cell], length: 
             )
 
 
-def _as_check(table: ForceTable, row: int, said: _Row, readings: int) -> Check:
-    words = [*said.comments, *([] if said.values else ["No derivative at the origin uses it."])]
-    if said.left_out:
-        words.insert(0, f"Left out of {listed(said.left_out)}{f', used by {listed(said.used)}' if said.used else ''}.")
-    advice = (LEFT_OUT if said.left_out and not said.used else ADVICE).replace("the row", _named(table, row))
+def _as_check(table: ForceTable, row: int, given: _Row, readings: int) -> Check:
+    words = [*given.comments, *([] if given.values else ["No derivative at the origin uses it."])]
+    if given.left_out:
+        words.insert(
+            0, f"Left out of {listed(given.left_out)}{f', used by {listed(given.used)}' if given.used else ''}."
+        )
+    advice = (LEFT_OUT if given.left_out and not given.used else ADVICE).replace("the row", _named(table, row))
     return Check(
         "data_gate",
         _where(table, row),
         Severity.WARN,
-        "; ".join([*said.cells, *said.values]),
+        "; ".join([*given.cells, *given.values]),
         f"of {readings} right readings one deviates so far with a probability above {LEVEL:g}"
-        if said.cells
+        if given.cells
         else "no row moves a value by its U95",
-        " ".join([*words, advice if said.cells or said.left_out else INFLUENTIAL]),
+        " ".join([*words, advice if given.cells or given.left_out else INFLUENTIAL]),
     )
 
 

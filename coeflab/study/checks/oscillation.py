@@ -54,7 +54,7 @@ def _published(study: Study, sweep: Sweep) -> list[tuple[Reference, str, Publish
     ]
 
 
-def _said(
+def _note(
     fit: FitResult, sweep: Sweep, slope: float, reference: Reference, method: str, published: PublishedValue
 ) -> Check:
     value = (published.value or 0.0) * reference.scaling.ratio(sweep.symbol, fit.coefficients.scaling)
@@ -73,7 +73,7 @@ def _said(
 def check(study: Study) -> Sequence[Check]:
     """One note per rotary derivative that a sweep gives and an oscillation test of the same body published."""
     return [
-        _said(fit, sweep, sweep.value, *published)
+        _note(fit, sweep, sweep.value, *published)
         for fit in study.fits
         for sweep in fit.sweeps
         if sweep.variable in RATES and sweep.parity == "odd" and sweep.value is not None and sweep.used.sum() >= FEWEST

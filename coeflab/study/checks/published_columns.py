@@ -20,9 +20,9 @@ citations = ()
 
 def check(study: Study) -> Sequence[Check]:
     """One finding a column that holds derivatives and is compared with none of ours."""
-    beside = {c.reference for c in study.comparisons}
+    compared = {c.reference for c in study.comparisons}
     towed = {name for asked in study.plan.tows for name in (*asked.experiment, *asked.columns)}
-    found = [r for r in study.references if r.values and r.name not in beside | towed]
+    found = [r for r in study.references if r.values and r.name not in compared | towed]
     return [as_check("published_columns", f) for r in found if (f := _why(study, r)) is not None]
 
 
@@ -32,10 +32,10 @@ def _why(study: Study, r: Reference) -> Finding | None:
     if not ours:
         return None
     if r.relation is Relation.RE_ANALYSIS and not {f.campaign for f in ours} & set(r.campaigns):
-        key, stands, known = "campaigns", r.campaigns, tuple(dict.fromkeys(f.campaign for f in ours))
+        key, printed, known = "campaigns", r.campaigns, tuple(dict.fromkeys(f.campaign for f in ours))
     elif r.datum is not None and all(f.coefficients.datum != r.datum for f in ours):
-        key, stands, known = "datum", (r.datum.id,), tuple(dict.fromkeys(f.coefficients.datum.id for f in ours))
+        key, printed, known = "datum", (r.datum.id,), tuple(dict.fromkeys(f.coefficients.datum.id for f in ours))
     else:
-        key, stands, known = "body", (r.body,), tuple(dict.fromkeys(f.body for f in ours))
+        key, printed, known = "body", (r.body,), tuple(dict.fromkeys(f.body for f in ours))
     advice = f"{key} = {list(known) if key == 'campaigns' else known[0]!r}".replace("'", '"')
-    return Finding.of("published.unused", r.name, Severity.WARN, advice=advice, key=key, stands=stands, known=known)
+    return Finding.of("published.unused", r.name, Severity.WARN, advice=advice, key=key, stands=printed, known=known)

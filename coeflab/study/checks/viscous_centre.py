@@ -61,7 +61,7 @@ class _Plane:
         doubt = ((c.u95 or 0.0) + assumed + abs(x) * (self.slope.u95 or 0.0 if self.slope else 0.0)) / abs(slope)
         return x - (self.centre or 0.0), doubt
 
-    def stands(self, c: Coefficient, less: float = 0.0) -> bool:
+    def is_significant(self, c: Coefficient, less: float = 0.0) -> bool:
         """Whether the force acts on the body and, where the centre is known, not ahead of it."""
         x, doubt = self.place(c, less)
         return abs(x) - doubt <= self.reach and (self.centre is None or x - doubt <= 0.0)
@@ -154,9 +154,9 @@ def _turning(p: _Plane) -> Check | None:
         return None
     x, doubt = p.place(c)
     rule = f"{'aft, ' if p.centre is not None else ''}within {p.reach:g} L"
-    if p.stands(c) or (abs(x) - doubt <= p.reach and _drifts_ahead(p)):
+    if p.is_significant(c) or (abs(x) - doubt <= p.reach and _drifts_ahead(p)):
         return _passed(p, c, x, rule)
-    fitting = [r for r in p.readings(c, prime) if p.stands(c, _value(c) - r[1])]
+    fitting = [r for r in p.readings(c, prime) if p.is_significant(c, _value(c) - r[1])]
     return _doubted(p, c, f"viscous force {_placed(p, x)}", rule, fitting)
 
 

@@ -14,7 +14,7 @@ from typing import Any
 
 from coeflab.core.options import NoOptions, parse_options
 from coeflab.core.texts import input_error
-from coeflab.tables.half_bodies import planes_beside
+from coeflab.tables.half_bodies import planes_in_files
 from coeflab.tables.monitor_files import decoded, files_of, first_filled, head, kind_of, lines_of, require
 from coeflab.tables.monitors import how_ended, in_order, laid_out, raw_table, read_monitor
 from coeflab.tables.raw_table import Run
@@ -86,6 +86,6 @@ def run(path: Path, options: Mapping[str, Any] | None = None) -> Run:
     columns = [(j, name.removeprefix(_POINT), "", "" if j else "iteration") for j, name in enumerate(names)]
     dialect = {"format": "CFX monitor data", "delimiter": "comma", "decimal mark": "point"}
     remarks = (f"{file.name}: monitor data state no directions and no units",)
-    stated, texts = planes_beside(path, _TEXTS, _SYMMETRY, _BOUNDARY)
+    stated, texts = planes_in_files(path, _TEXTS, _SYMMETRY, _BOUNDARY)
     table = raw_table(monitor, path, columns, (file, *texts), dialect, stated, remarks)
     return Run(path, path.stem, table, ended=ended, why=why)

@@ -238,7 +238,7 @@ def _head_over(rows: list[list[Value]], begin: int, numbers: Set[int], options: 
     return read_head(above, len(rows[0]), PLAIN, numbers, options.header, options.units)
 
 
-def _kept(
+def _data_rows(
     rows: list[list[Value]], begin: int, head: Head, options: Options, path: Path
 ) -> tuple[list[int], list[str], list[Title]]:
     """Indices of the rows of data, what is said of the others, and the words among them."""
@@ -316,7 +316,7 @@ def raw(path: Path, options: Mapping[str, Any]) -> RawTable:
     name = _chosen(sheets, given, path)
     rows = sheets[name]
     begin, head = _body(rows, given, path)
-    selected, left, titles = _kept(rows, begin, head, given, path)
+    selected, left, titles = _data_rows(rows, begin, head, given, path)
     lines = [i + 1 for i in selected]
     met = [Cells() for _ in rows[0]]
     values, texts = [], {}

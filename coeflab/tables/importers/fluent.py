@@ -21,7 +21,7 @@ from coeflab.core.limits import JSON_BYTES
 from coeflab.core.options import NoOptions, parse_options
 from coeflab.core.text.bounded import stream_of
 from coeflab.core.texts import input_error
-from coeflab.tables.half_bodies import planes_beside
+from coeflab.tables.half_bodies import planes_in_files
 from coeflab.tables.monitor_files import decoded, files_of, first_filled, head, kind_of, lines_of, one_run, require
 from coeflab.tables.monitors import (
     Monitor,
@@ -123,7 +123,7 @@ def run(path: Path, options: Mapping[str, Any] | None = None) -> Run:
     columns = [(j, name, *_meaning(name, j)) for j, name in enumerate(whole.names)]
     dialect = {"format": "Fluent report file", "delimiter": "blanks", "decimal mark": "point"}
     remarks = (f"{files[0].name}: report files state no directions and no units",)
-    stated, texts = planes_beside(path, _TEXTS, _SYMMETRY)
+    stated, texts = planes_in_files(path, _TEXTS, _SYMMETRY)
     table = raw_table(whole, path, columns, (*files, *texts), dialect, stated, remarks)
     return Run(path, path.stem, table, ended=ended, why=why)
 
@@ -284,7 +284,7 @@ def _force_report(path: Path) -> Run:
             "tables.several_moment_centres", path, next(t.line for t in tables if t.centre not in (None, tables[0].centre)),
             count=len(centres),
         )  # fmt: skip
-    stated, texts = planes_beside(path, _TEXTS, _SYMMETRY)
+    stated, texts = planes_in_files(path, _TEXTS, _SYMMETRY)
     if centres:
         line = next(t.line for t in tables if t.centre)
         stated["axes.reference_point"] = Stated(centres.pop(), f"{path.name}:{line}")

@@ -20,7 +20,7 @@ from coeflab.core.options import NoOptions, parse_options
 from coeflab.core.text.bounded import whole_bytes
 from coeflab.core.texts import input_error
 from coeflab.tables.dialect import Marks, name_and_unit
-from coeflab.tables.half_bodies import planes_beside
+from coeflab.tables.half_bodies import planes_in_files
 from coeflab.tables.monitor_files import decoded, head, header_cells, lines_of
 from coeflab.tables.raw_table import Ended, RawColumn, RawTable, Run, Stated
 
@@ -84,12 +84,12 @@ def run(path: Path, options: Mapping[str, Any] | None = None) -> Run:
     if _BREAKDOWN.search(text):
         kind, columns = "SU2 forces breakdown", list(_breakdown(lines))
         conditions, stated = _of_su2(lines, path)
-        half, texts = planes_beside(
+        half, texts = planes_in_files(
             path, (".cfg", ".log"), re.compile(r"(?i)^\s*MARKER_SYM\w*\s*=\s*\(?\s*(?!NONE)(?P<name>\w+)")
         )
     elif _is_cfx(text[: 1 << 16]):
         kind, columns = "wall forces of CFX", list(_walls(lines))
-        half, texts = planes_beside(path, (".ccl", ".out"), _SYMMETRY, _BOUNDARY)
+        half, texts = planes_in_files(path, (".ccl", ".out"), _SYMMETRY, _BOUNDARY)
         stated = {
             "axes.reference_point": Stated((0.0, 0.0, 0.0), "the origin of the axes, as CFX has it", convention=True)
         }

@@ -17,7 +17,7 @@ import numpy as np
 from coeflab.core.errors import shown
 from coeflab.core.options import NoOptions, parse_options
 from coeflab.core.texts import input_error
-from coeflab.tables.half_bodies import planes_beside
+from coeflab.tables.half_bodies import planes_in_files
 from coeflab.tables.monitor_files import decoded, files_of, first_filled, head, header_cells, kind_of, lines_of, require
 from coeflab.tables.monitors import Monitor, how_ended, in_order, joined, laid_out, raw_table, read_monitor, worst_end
 from coeflab.tables.raw_table import Run
@@ -104,7 +104,7 @@ def run(path: Path, options: Mapping[str, Any] | None = None) -> Run:
         "delimiter": _DELIMITERS[delimiter],
         "decimal mark": "point" if delimiter == "," else "point or comma",
     }
-    stated, texts = planes_beside(path, _TEXTS, _SYMMETRY, _BOUNDARY)
+    stated, texts = planes_in_files(path, _TEXTS, _SYMMETRY, _BOUNDARY)
     table = raw_table(whole, path, columns, (*files, *texts), dialect, stated)
     return Run(path, path.stem, table, ended=ended, why=why)
 

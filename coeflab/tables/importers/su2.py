@@ -31,7 +31,7 @@ from coeflab.core.limits import LARGEST_NUMBER, MONITOR_FILES, TOML_BYTES
 from coeflab.core.options import NoOptions, parse_options
 from coeflab.core.text.bounded import stream_of
 from coeflab.core.texts import input_error
-from coeflab.tables.half_bodies import planes_beside, stated_plane
+from coeflab.tables.half_bodies import planes_in_files, stated_plane
 from coeflab.tables.monitor_files import decoded, files_of, first_filled, head, kind_of, lines_of, one_run, require
 from coeflab.tables.monitors import Monitor, how_ended, in_order, laid_out, pieced, raw_table, read_monitor
 from coeflab.tables.raw_table import Run, Stated
@@ -104,7 +104,7 @@ def run(path: Path, options: Mapping[str, Any] | None = None) -> Run:
     parse_options(NoOptions, options or {}, "importers.su2")
     files = _histories(path)
     pieces = [_read(f) for f in files]
-    config, beside, remarks = _config(files)
+    config, config_files, remarks = _config(files)
     files = (*files, config.path) if config else files
     if not any(p.names for p in pieces):
         return Run.empty(path, f"{files[0].name}: empty", files)
@@ -114,7 +114,7 @@ def run(path: Path, options: Mapping[str, Any] | None = None) -> Run:
     ended, why = how_ended(pieces[-1], judged)
     monitor = pieced(pieces, index)
     conditions, stated, words = _stated(config, monitor)
-    half, texts = _symmetry_planes(files[0], beside)
+    half, texts = _symmetry_planes(files[0], config_files)
     stated |= half
     files = (*files, *texts)
     if config is not None and (change := _rescaled(config, conditions, monitor)):
@@ -272,23 +272,23 @@ def _symmetry_planes(history: Path, configs: Sequence[_Config]) -> tuple[dict[st
             places += [f"{config.at(key)}: marker {name} is a symmetry plane" for name in names]
     if places:
         return stated_plane(places), []
-    return planes_beside(history.parent, (".cfg", ".log", ".out", ".txt"), _SYMMETRY_IN_LOG)
+    return planes_in_files(history.parent, (".cfg", ".log", ".out", ".txt"), _SYMMETRY_IN_LOG)
 
 
 def _config(files: Sequence[Path]) -> tuple[_Config | None, Sequence[_Config], list[str]]:
     """The config file of a history: the only one beside it, or the only one whose CONV_FILENAME names it; and all beside it."""
     folder = files[0].parent
     try:
-        beside = sorted(p for p in folder.iterdir() if p.suffix.lower() == ".cfg" and p.is_file())[:MONITOR_FILES]
+        config_files = sorted(p for p in folder.iterdir() if p.suffix.lower() == ".cfg" and p.is_file())[:MONITOR_FILES]
     except OSError:
-        beside = []
-    every = configs = [_read_config(p) for p in beside]
+        config_files = []
+    every = configs = [_read_config(p) for p in config_files]
     if len(configs) > 1:
         configs = [c for c in configs if (c.text("CONV_FILENAME") or "history").partition(".")[0] == files[0].stem]
     if len(configs) == 1:
         return configs[0], configs, []
-    if beside:
-        names = shown(", ".join(p.name for p in beside), 200)
+    if config_files:
+        names = shown(", ".join(p.name for p in config_files), 200)
         why = f"conditions not read: config files {names}, and CONV_FILENAME does not show which one is meant"
         return None, configs or every, [why]
     return None, [], [f"conditions not read: no .cfg file beside {files[0].name}"]

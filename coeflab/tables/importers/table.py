@@ -285,7 +285,7 @@ def raw(path: Path, options: Mapping[str, Any]) -> RawTable:
     titles = [Title(0, 0, text) for text in dialect.above]
     titles += [Title(int(np.searchsorted(lines, n)), n, text) for n, text in body.titles]
     table = RawTable(
-        path, columns, dialect.head.line, lines, files=(path,), dialect=dialect.said, stated=dialect.stated,
+        path, columns, dialect.head.line, lines, files=(path,), dialect=dialect.summary, stated=dialect.stated,
         remarks=(*dialect.remarks, *_remarks(body), *remarks),
     )  # fmt: skip
     return with_blocks(table, titles, dialect.marks)

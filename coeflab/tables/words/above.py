@@ -41,7 +41,7 @@ _DIMENSIONS = {
     "conditions.viscosity": "viscosity",
 }  # fmt: skip
 _LENGTHS = ("lpp", "lbp", "loa", "lwl", "los")
-_SAID = re.compile(
+_STATED = re.compile(
     r"(?P<name>[^\W\d_][^=:;,()\[\]]{0,40}?)\s*(?:[\[(](?P<before>[^\[\]()]{1,12})[\])])?\s*(?:=|:)\s*"
     r"(?P<number>[-+]?\d[\d.,' ]*(?:[eE][-+]?\d+)?)\s*[\[(]?(?P<unit>(?:[^\W\d]|[°µ])[^\s,;=\[\])]*)?"
 )
@@ -246,7 +246,7 @@ def _sizes(text: str, marks: Marks) -> Iterator[tuple[str, str, float, str]]:
             name = short if short in _LENGTHS else "loa" if overall else ""
             yield key, name, size, m[0]
     spans = [m.span() for _, m in lengths]
-    for m in _SAID.finditer(text):
+    for m in _STATED.finditer(text):
         words = m["name"].split()
         name = next((f for w in (m["name"], words[-1], words[0]) if (f := folded(w)) in _KEYS), "")
         unit = (m["before"] or m["unit"] or "").strip(" .;")

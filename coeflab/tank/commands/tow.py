@@ -111,7 +111,7 @@ def _refuse_begun(folder: Path) -> None:
 
 
 def _tow(
-    said: str, matrix: Path | None, solver: str, out: Path | None, dry_run: bool, runner: str, cores: int, json: bool,
+    body_name: str, matrix: Path | None, solver: str, out: Path | None, dry_run: bool, runner: str, cores: int, json: bool,
     go_on: bool = True, finished: str = "",
 ) -> None:  # fmt: skip
     """Lay out, and unless it is a dry run, carry out and collect."""
@@ -120,7 +120,7 @@ def _tow(
     from coeflab.core.wording import file_stem
     from coeflab.tank.folder import PLAN, has_begun, read_plan, refuse_other
 
-    body = located(said, "geometry") if said else None
+    body = located(body_name, "geometry") if body_name else None
     with show.progress(json) as say:
         say("reading the body")
         own = matrix
@@ -151,7 +151,7 @@ def _tow(
             if not json:
                 show.sentence(f"Taken over from {finished}: {len(taken)} of {len(tow.tank.matrix)} conditions.")
         if dry_run:
-            asked = [*([said] if said else []), *(["--matrix", str(matrix)] if matrix else [])]
+            asked = [*([body_name] if body_name else []), *(["--matrix", str(matrix)] if matrix else [])]
             asked += ["--solver", solver] if solver else []
             _dry(tow, before, asked, None if place != folder else folder, cores, json, by_default=own is None)
             return
@@ -239,10 +239,10 @@ def _at_once(tow: Tow, budget: int) -> float:
 def _fates(tow: Tow, before: Mapping[str, Any] | None) -> None:
     """What is kept, and what is run anew and why."""
     from coeflab.tank.jobs import JobState
-    from coeflab.tank.tow import ANEW, BEGINS, kept
+    from coeflab.tank.tow import ANEW, BEGINS, reuse
 
-    found = kept(tow, before)
-    same = [k for k in found if k.state.is_kept]
+    found = reuse(tow, before)
+    same = [k for k in found if k.state.is_final]
     waiting = [k for k in found if k.state is JobState.WAITING]
     others = [k for k in found if k not in same and k not in waiting]
     anew = [k for k in others if k.what in (ANEW, BEGINS)]
@@ -314,7 +314,7 @@ def _live(tow: Tow, json: bool) -> Iterator[Any]:
         fresh = [r for r in rows if words.get(r.job.name) != str(r.progress.state)]
         for r in fresh:
             words[r.job.name] = str(r.progress.state)
-        over = [r for r in fresh if r.progress.state.is_kept or r.progress.why]
+        over = [r for r in fresh if r.progress.state.is_final or r.progress.why]
         if any(not r.job.name.startswith("mesh/") for r in over):
             try:
                 tank_room.collected(tow, fitted=False)
@@ -448,45 +448,45 @@ def _collected_only(folder: Path, json: bool) -> None:
     _answer(tow, tank_room.collected(tow), folder, json)
 
 
-def _answer(tow: Tow, made: Collected, folder: Path, json: bool, begun: bool = False) -> None:
+def _answer(tow: Tow, result: Collected, folder: Path, json: bool, begun: bool = False) -> None:
     """The six derivatives first, then the conditions, the files and the next command; exit code 1 where one did not converge."""
     from coeflab.tank import tables
     from coeflab.tank.folder import CAMPAIGN, REPORT
 
     if json:
-        show.json_object(_as_json(tow, made))
+        show.json_object(_as_json(tow, result))
     else:
-        show.table(tables.six(tow.tank, made.six, made.unfitted))
-        estimated = tables.is_estimated(made.six)
-        checks = () if estimated else tables.symmetry_checks(made.study)
-        for words in (tables.covers(made.six), *checks):
+        show.table(tables.six(tow.tank, result.six, result.unfitted))
+        estimated = tables.is_estimated(result.six)
+        checks = () if estimated else tables.symmetry_checks(result.study)
+        for words in (tables.covers(result.six), *checks):
             show.sentence(words)
-        show.sentence(tables.outcome(made.runs, estimated))
-        for remark, names in tables.remarks(made.runs).items():
+        show.sentence(tables.outcome(result.runs, estimated))
+        for remark, names in tables.remarks(result.runs).items():
             show.sentence(f"  {remark} ({names})")
-        show.table(tables.ended(made.runs))
-        if made.files:
+        show.table(tables.ended(result.runs))
+        if result.files:
             show.text(f"Campaign: {folder / CAMPAIGN}")
-        for page in (p for p in made.files if p.suffix == ".html"):
+        for page in (p for p in result.files if p.suffix == ".html"):
             show.text(f"Report:   {folder / REPORT / page.name}")
-        show.sentence(f"Next: {_next(tow, made, folder)}")
-    if not begun and not all(r.counts for r in made.runs):
+        show.sentence(f"Next: {_next(tow, result, folder)}")
+    if not begun and not all(r.counts for r in result.runs):
         raise typer.Exit(1)
 
 
-def _as_json(tow: Tow, made: Collected) -> dict[str, Any]:
+def _as_json(tow: Tow, result: Collected) -> dict[str, Any]:
     six = {}
-    for r in made.six:
+    for r in result.six:
         status = r.missing if r.coefficient is None else str(r.coefficient.status)
         six[f"{r.symbol}'"] = {"value": r.value, "u95": r.u95, "status": status, "why": r.why or None}
     return {
         "name": tow.tank.name, "solver": tow.tank.solver, "version": tow.installed.version, "six": six,
-        "conditions": [{"name": r.condition.name, "state": r.status, "why": r.why or None} for r in made.runs],
-        "unfitted": made.unfitted or None, "files": [str(p) for p in made.files],
+        "conditions": [{"name": r.condition.name, "state": r.status, "why": r.why or None} for r in result.runs],
+        "unfitted": result.unfitted or None, "files": [str(p) for p in result.files],
     }  # fmt: skip
 
 
-def _next(tow: Tow, made: Collected, folder: Path) -> str:
+def _next(tow: Tow, result: Collected, folder: Path) -> str:
     """What to type, or to mend first."""
     from coeflab.core.files import shipped
     from coeflab.tank.folder import CAMPAIGN, TANK
@@ -494,7 +494,7 @@ def _next(tow: Tow, made: Collected, folder: Path) -> str:
     from coeflab.tank.tables import is_estimated
 
     place = shlex.quote(str(folder))
-    states = {r.state for r in made.runs if not r.counts}
+    states = {r.state for r in result.runs if not r.counts}
     if tow.solver.table is not None and states:
         where = tow.tank.options.get("table") or folder / tow.tank.solver / "forces.csv"
         return f"fill in {where}, then coeflab tow {place} --collect"
@@ -502,7 +502,7 @@ def _next(tow: Tow, made: Collected, folder: Path) -> str:
         return f"coeflab tow {place} --continue"
     if JobState.UNCONVERGED in states:
         return f"allow more iterations in {folder / TANK}, then coeflab tow {place} --continue"
-    if is_estimated(made.six):
+    if is_estimated(result.six):
         body = tow.tank.body.parent
         named = body.name if body.parent == shipped("geometry") else str(tow.tank.body)
         return (

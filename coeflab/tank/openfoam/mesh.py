@@ -19,7 +19,7 @@ from coeflab.tank.openfoam import rendered, step
 from coeflab.tank.openfoam.cell_count import BETWEEN_LEVELS, cell_count
 from coeflab.tank.openfoam.features import features, foils
 from coeflab.tank.openfoam.layers import GROWTH, LAST_LAYER, LEAST_LAYER
-from coeflab.tank.openfoam.mesh_made import GEOMETRY, MADE, PLANNED
+from coeflab.tank.openfoam.mesh_report import GEOMETRY, MESH_FILE, PLANNED
 from coeflab.tank.openfoam.mesh_sizes import MOST_CELLS, MeshKeys, MeshSizes, mesh_sizes
 from coeflab.tank.openfoam.mirroring import SYMMETRY_AXIS, images, mirrored_axes
 from coeflab.tank.tank import Grid, Tank
@@ -188,7 +188,7 @@ def _joined(ends: Array) -> tuple[Array, NDArray[np.int64]]:
 
 def _steps(twins: Twins, cores: int) -> tuple[Step, ...]:
     processors = [f"processor{k}" for k in range(cores)]
-    clean = Step("clean", ("rm", "-rf", "constant/polyMesh", MADE, *processors))
+    clean = Step("clean", ("rm", "-rf", "constant/polyMesh", MESH_FILE, *processors))
     whole = [
         _with_dict(what, "xyz"[axis]) for axis, pairs in twins.items() for what in AFTER_MIRROR
         if pairs or what != "topoSet"

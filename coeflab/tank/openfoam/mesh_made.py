@@ -23,7 +23,7 @@ from coeflab.core.types import Array, brief
 from coeflab.tank.jobs import ANEW, Job
 
 GEOMETRY = "constant/triSurface"
-MADE, PLANNED = "mesh.json", "planned.json"
+MESH_FILE, PLANNED = "mesh.json", "planned.json"
 # What checkMesh marks and no solver can use; what else it marks is a remark.
 UNUSABLE = ("negative", "open cells", "boundary openness", "face pyramids", "invalid face", "boundary definition")
 SKEW = re.compile(r"Max skewness = (\S+?),? (\d+) highly skew faces")
@@ -34,7 +34,7 @@ NUMBER = r"[-+\d.eE]+"
 
 @brief
 @dataclass(frozen=True, slots=True)
-class MeshMade:
+class MeshReport:
     """A mesh.
 
     Attributes
@@ -70,7 +70,7 @@ _PLANNED = {
     "coverage?": _BY_PATCH,
     "images?": {str: str},
 }
-_MADE = {
+_MESH_KEYS = {
     "cells": int, "layers": _BY_PATCH, "surface": _BY_PATCH, "volume": float, "non_orthogonality": float, "skewness": float,
     "marked": [str],
 }  # fmt: skip
@@ -98,29 +98,29 @@ def mesh_ended(job: Job) -> tuple[tuple[str, ...], str]:
         return (), f"no mesh was made: {Path(why.filename).relative_to(job.folder)} is missing"
     except (ValueError, IndexError) as why:
         return (), f"the mesh cannot be read: {why}"
-    write_all(job.folder, {MADE: (json.dumps(asdict(result), indent=1) + "\n").encode()})
+    write_all(job.folder, {MESH_FILE: (json.dumps(asdict(result), indent=1) + "\n").encode()})
     return tuple(map(remark, findings(result, planned))), next(_faults(result), "")
 
 
-def mesh_made(folder: Path) -> MeshMade | None:
+def mesh_report(folder: Path) -> MeshReport | None:
     """The mesh in a folder as its job left it; None before it is made."""
-    if not (folder / MADE).is_file():
+    if not (folder / MESH_FILE).is_file():
         return None
-    selected = read_record(folder / MADE, _MADE, "what a mesh became", advice=ANEW)
-    selected = {f.name: selected[f.name] for f in fields(MeshMade)}
+    selected = read_record(folder / MESH_FILE, _MESH_KEYS, "what a mesh became", advice=ANEW)
+    selected = {f.name: selected[f.name] for f in fields(MeshReport)}
     tables = {name: MappingProxyType(selected[name]) for name in ("layers", "surface")}
-    return MeshMade(**(selected | tables | {"marked": tuple(selected["marked"])}))
+    return MeshReport(**(selected | tables | {"marked": tuple(selected["marked"])}))
 
 
 def expected_cells(folder: Path) -> float:
     """Cells of the mesh in a folder: counted once it is made, expected before."""
-    result = mesh_made(folder)
+    result = mesh_report(folder)
     if result:
         return float(result.cells)
     return float(read_record(folder / PLANNED, _PLANNED, "what was planned of a mesh", advice=ANEW)["cells"])
 
 
-def _read(folder: Path, planned: Mapping[str, Any]) -> MeshMade:
+def _read(folder: Path, planned: Mapping[str, Any]) -> MeshReport:
     checked = log_text(folder / "log.checkMesh")
     surface, volume = _body_in_mesh(folder / "constant" / "polyMesh", list(planned["surface"]))
     asked = {patch: count for patch, count in planned["layers"].items() if planned["surface"][patch] > 0.0}
@@ -128,7 +128,7 @@ def _read(folder: Path, planned: Mapping[str, Any]) -> MeshMade:
     layers = dict.fromkeys(asked, 0.0) | {p: mean / asked[p] for p, mean in _layers(snapped) if p in asked}
     for image, patch in planned.get("images", {}).items():  # made by mirroring, of which snappyHexMesh knows nothing
         layers |= {image: layers[patch]} if image in layers and patch in layers else {}
-    return MeshMade(
+    return MeshReport(
         cells=int(_after("cells:", checked)),
         layers=layers,
         surface={name: surface[name] / area for name, area in planned["surface"].items() if area > 0.0},
@@ -153,31 +153,31 @@ def _layers(log: str) -> Iterator[tuple[str, float]]:
         yield patch, float(mean)
 
 
-def findings(made: MeshMade, planned: Mapping[str, Any]) -> tuple[Finding, ...]:
+def findings(mesh: MeshReport, planned: Mapping[str, Any]) -> tuple[Finding, ...]:
     """What is to be known of a mesh that is used.
 
     Parameters
     ----------
-    made : MeshMade
+    mesh : MeshMade
     planned : mapping
         What ``planned.json`` holds.
     """
-    return tuple(_findings(made, planned))
+    return tuple(_findings(mesh, planned))
 
 
-def _findings(made: MeshMade, planned: Mapping[str, Any]) -> Iterator[Finding]:
-    for patch, share in made.layers.items():
+def _findings(mesh: MeshReport, planned: Mapping[str, Any]) -> Iterator[Finding]:
+    for patch, share in mesh.layers.items():
         if share < (wanted := planned["coverage"][patch]):
             yield Finding.of("tow.layers", patch, Severity.WARN, statistic=share, threshold=wanted)
         if (count := planned["layers"][patch]) <= FEW_LAYERS:
             yield Finding.of("tow.few_layers", patch, Severity.NOTE, statistic=float(count), threshold=FEW_LAYERS + 1.0)
-    for patch, share in made.surface.items():
+    for patch, share in mesh.surface.items():
         if abs(share - 1.0) > SURFACE_WITHIN:
             yield Finding.of(
                 "tow.surface", patch, Severity.WARN, statistic=share, threshold=SURFACE_WITHIN,
                 advice=f"cells.{patch}",
             )  # fmt: skip
-    for line in made.marked:
+    for line in mesh.marked:
         skew = SKEW.search(line)
         if skew:
             yield Finding.of(
@@ -187,15 +187,15 @@ def _findings(made: MeshMade, planned: Mapping[str, Any]) -> Iterator[Finding]:
             yield Finding.of("tow.check_mesh", "mesh", Severity.NOTE, line=line)
 
 
-def _faults(made: MeshMade) -> Iterator[str]:
-    for patch, share in made.surface.items():
+def _faults(mesh: MeshReport) -> Iterator[str]:
+    for patch, share in mesh.surface.items():
         if share == 0.0:
             yield f"no cell lies on the patch {patch}: its cells are too large for its shape"
         elif not SURFACE_LEAST < share < 1.0 / SURFACE_LEAST:
             yield f"the patch {patch} has {share:.0%} of its surface"
-    if abs(made.volume - 1.0) > VOLUME_WITHIN:
-        yield f"the mesh leaves out {made.volume:.0%} of the body's volume: water got in, or cells are too large"
-    yield from (f"checkMesh: {line}" for line in made.marked if _unusable(line))
+    if abs(mesh.volume - 1.0) > VOLUME_WITHIN:
+        yield f"the mesh leaves out {mesh.volume:.0%} of the body's volume: water got in, or cells are too large"
+    yield from (f"checkMesh: {line}" for line in mesh.marked if _unusable(line))
 
 
 def _unusable(line: str) -> bool:

@@ -78,7 +78,7 @@ def carry_out(jobs: Sequence[Job], folder: Path, options: Local, look: Callable[
             for job, process in [(j, p) for j, p in running if p.poll() is not None]:
                 running.remove((job, process))
                 if process.returncode == REFUSED:
-                    refused.append(_said(job))
+                    refused.append(_last_message(job))
                 if process.returncode == REFUSED or progress(job).state is not JobState.FINISHED:
                     failed.add(job.name)
             waiting = list(_possible(waiting, failed))
@@ -139,7 +139,7 @@ def _begun(job: Job, nice: int) -> subprocess.Popen[bytes]:
         raise OutputError(f"{job.name} cannot be begun: {why.strerror or why}.") from None
 
 
-def _said(job: Job) -> str:
+def _last_message(job: Job) -> str:
     """The last that the process of a job said."""
     lines = log_text(job.folder / LOG).splitlines()
     return f"{job.name}: {lines[-1].removeprefix('error: ') if lines else 'it printed nothing'}"

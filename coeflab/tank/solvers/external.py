@@ -36,8 +36,8 @@ citations = ()
 
 FOLDER, LIST, FORCES = "external", "run_list.csv", "forces.csv"
 CONDITION, COUNTS = "condition", ("cells", "iterations")
-LOST = {Half.UPPER: CUTS[UP_DOWN].lost, Half.PORT: CUTS[PORT_STARBOARD].lost}
-BY_SYMMETRY = {Half.WHOLE: "", **{h: " ".join(c) for h, c in LOST.items()}}  # zero, and not to be filled in
+CANCELLED = {Half.UPPER: CUTS[UP_DOWN].cancelled, Half.PORT: CUTS[PORT_STARBOARD].cancelled}
+BY_SYMMETRY = {Half.WHOLE: "", **{h: " ".join(c) for h, c in CANCELLED.items()}}  # zero, and not to be filled in
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -26,7 +26,7 @@ from coeflab.tables.raw_table import Ended, RawColumn, RawTable, Run
 from coeflab.tank.jobs import Job, Step
 from coeflab.tank.openfoam import case, rendered, step
 from coeflab.tank.openfoam.mesh import mesh_job
-from coeflab.tank.openfoam.mesh_made import expected_cells, mesh_ended
+from coeflab.tank.openfoam.mesh_report import expected_cells, mesh_ended
 from coeflab.tank.openfoam.mesh_sizes import MeshKeys, mesh_sizes
 from coeflab.tank.solvers import Installation
 from coeflab.tank.tank import Tank

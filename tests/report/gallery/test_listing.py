@@ -64,7 +64,7 @@ def test_a_card_says_verdict_day_and_where_its_picture_is(folder):
         "Both agree within U95", "1971-01-01", "boat/report.html",
     )  # fmt: skip
     assert Shelf(folder).drawing(found.picture).startswith("<svg")
-    assert [(c.symbol, c.said) for c in found.coefficients] == [("Yv'", "-0.0260 +- 0.0030"), ("Nr'", "no data")]
+    assert [(c.symbol, c.value_text) for c in found.coefficients] == [("Yv'", "-0.0260 +- 0.0030"), ("Nr'", "no data")]
 
 
 def test_a_picture_keeps_the_looks_that_the_page_of_its_report_has_as_classes(tmp_path):
@@ -103,7 +103,7 @@ def test_a_search_finds_coefficients_in_files_and_reports(folder):
     assert [(c.symbol, e.path) for c, e in hits] == [
         ("Yv'", "a.parameters.json"), ("Yv'", "alias.parameters.json"), ("Yv'", "b.parameters.json"), ("Yv'", "boat/report.html"),
     ]  # fmt: skip
-    assert [(c.said, e.called) for c, e in found.coefficients("YV' second")] == [("-0.0400 +- 0.0020", "second")]
+    assert [(c.value_text, e.called) for c, e in found.coefficients("YV' second")] == [("-0.0400 +- 0.0020", "second")]
     assert [e.path for _, e in found.coefficients("tank yv'")] == ["boat/report.html"]
     assert {c.symbol for c, _ in found.coefficients("Y")} == set()
     assert found.coefficients("boat") == ()
