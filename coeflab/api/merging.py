@@ -12,7 +12,7 @@ from coeflab.motion.uncertainty.uncertainty import Carried
 from coeflab.study.estimated_vehicle import given_by, replaced
 from coeflab.study.run import run
 from coeflab.vehicle.merge import Merged
-from coeflab.vehicle.own_numbers import OwnNumber, own_numbers, as_file
+from coeflab.vehicle.own_numbers import OwnNumber, as_file, own_numbers
 from coeflab.vehicle.parameter_file import ParameterFile
 
 __all__ = ["Merge", "merge", "own_numbers"]

@@ -7,7 +7,7 @@ from typing import Any, Protocol
 
 from coeflab.core.errors import InputError
 from coeflab.formats.model_files import OWN, read_model_file, read_vehicle_file
-from coeflab.vehicle.coefficient_list import with_sheet, read_coefficient_list
+from coeflab.vehicle.coefficient_list import read_coefficient_list, with_sheet
 from coeflab.vehicle.conform import conform
 from coeflab.vehicle.force_law import EDGE, not_used
 from coeflab.vehicle.own_numbers import typed_file
@@ -15,8 +15,19 @@ from coeflab.vehicle.parameter_file import ParameterFile
 from coeflab.vehicle.plausibility import plausibility
 
 __all__ = [
-    "EDGE", "OWN", "HasParameters", "ParameterFile", "beside_sheet", "conform", "not_used", "parameters_of", "plausibility",
-    "read_coefficient_list", "read_model_file", "read_parameters", "typed_file",
+    "EDGE",
+    "OWN",
+    "HasParameters",
+    "ParameterFile",
+    "conform",
+    "not_used",
+    "parameters_of",
+    "plausibility",
+    "read_coefficient_list",
+    "read_model_file",
+    "read_parameters",
+    "typed_file",
+    "with_sheet",
 ]  # fmt: skip
 
 

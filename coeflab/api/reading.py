@@ -196,7 +196,7 @@ def read_tables(
 
     Parameters
     ----------
-    source, columns, name, importer, options, accept, **said
+    source, columns, name, importer, options, accept, **keywords
         As of `read_table`.
 
     Returns

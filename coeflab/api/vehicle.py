@@ -38,7 +38,7 @@ from coeflab.study.study import Plan
 from coeflab.vehicle.assemble import PlannedParameterFile, assemble
 from coeflab.vehicle.from_shape import Stated
 from coeflab.vehicle.merge import merged
-from coeflab.vehicle.own_numbers import OwnNumber, own_numbers, as_file, typed_surfaces, typed_thrusters
+from coeflab.vehicle.own_numbers import OwnNumber, as_file, own_numbers, typed_surfaces, typed_thrusters
 from coeflab.vehicle.parameter_file import ParameterFile
 from coeflab.vehicle.plausibility import plausibility
 from coeflab.vehicle.stability import DRAWS, INDICES, missing_for_stability, sense, stability

@@ -14,7 +14,7 @@ from coeflab.arm.chain import Base, Chain, Joint, Link, Strip
 from coeflab.arm.control import Controller
 from coeflab.arm.manoeuvres import PHASES, ordered
 from coeflab.arm.readers.arm import File
-from coeflab.arm.thrusters import Thruster, TorqueThruster, VoltageThruster, uncontrolled_directions, thruster_matrix
+from coeflab.arm.thrusters import Thruster, TorqueThruster, VoltageThruster, thruster_matrix, uncontrolled_directions
 from coeflab.bodies.closed_forms import ellipsoid_added_mass
 from coeflab.core import declarations as takes
 from coeflab.core.errors import shown

@@ -137,7 +137,7 @@ def new(
     import shlex
 
     from coeflab.api.importing import options_of
-    from coeflab.api.parameters import with_sheet, plausibility, read_coefficient_list, typed_file
+    from coeflab.api.parameters import plausibility, read_coefficient_list, typed_file, with_sheet
     from coeflab.core.errors import InputError, OutputError
     from coeflab.core.files import typed, write_all
     from coeflab.core.wording import file_stem

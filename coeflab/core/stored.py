@@ -311,7 +311,7 @@ class AsStored:
 
 @dataclass(frozen=True, slots=True)
 class Choice:
-    """One of some words, spelt out where the field stands; ``made`` makes the noun's own value of it."""
+    """One of some words, spelt out where the field stands; ``construct`` makes the noun's own value of it."""
 
     words: tuple[str, ...]
     construct: Callable[[Any], Any] = str

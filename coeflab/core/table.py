@@ -345,6 +345,8 @@ class Check:
         What it was held against.
     comment : str
         What it means and what to do.
+    campaign, table : str
+        Whose rows it is on; empty where it is on no rows, the table where it is on the whole campaign.
     """
 
     name: str
@@ -353,6 +355,8 @@ class Check:
     statistic: str
     rule: str
     comment: str
+    campaign: str = ""
+    table: str = ""
 
     @classmethod
     def of(cls, code: str, subject: str, severity: Severity, **facts: Any) -> Check:

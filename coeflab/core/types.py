@@ -32,7 +32,7 @@ def locked_columns(columns: Mapping[str, ArrayLike], dtype: type = float) -> Map
 
 
 Given = ParamSpec("Given")
-Returned = TypeVar("Made")
+Returned = TypeVar("Returned")
 
 
 def remembered(many: int) -> Callable[[Callable[Given, Returned]], Callable[Given, Returned]]:

@@ -27,7 +27,7 @@ from coeflab.formats import (
     SteeredExporter,
 )
 from coeflab.formats.lacking_law import found_in, lacking_tables, without_law
-from coeflab.formats.loss import Kind, Loss, LossItem, loss_of, common_losses
+from coeflab.formats.loss import Kind, Loss, LossItem, common_losses, loss_of
 from coeflab.formats.loss_tables import as_text, in_short
 from coeflab.vehicle.inertia import MEASURED, converted, water_inertia, with_accelerations
 

@@ -15,7 +15,7 @@ from coeflab.core.limits import positive_number
 from coeflab.core.provenance import InputFile, sha256_of
 from coeflab.core.types import Array, brief, locking
 from coeflab.core.wording import one_line
-from coeflab.formats.stated_coefficients import Coefficients, valid_matrix, matrix_doubts, stated_coefficients
+from coeflab.formats.stated_coefficients import Coefficients, matrix_doubts, stated_coefficients, valid_matrix
 from coeflab.formats.stated_file import Stated, stated_file
 from coeflab.law.rigid_body import MassProperties, inertia_doubt
 from coeflab.law.scaling import Conditions, Scaling

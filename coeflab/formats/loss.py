@@ -220,7 +220,7 @@ class Loss:
     target : str
     not_held : tuple of str
         Terms that the target cannot represent, in words, symbol first.
-    lost : tuple of Lost
+    lost : tuple of LossItem
         What is lost beside terms.
     changes : tuple of str
         What was changed in sign, axes or form, and why.
@@ -422,7 +422,7 @@ def loss_of(
         The target's files and (n, 6) velocities -> (n, 6) forces, FRD, about the file's reference point, steady motion.
     not_held : tuple of str
         Terms that the target has no place for.
-    lost : tuple of Lost
+    lost : tuple of LossItem
         What else of the file it is not given.
     changes : tuple of str
         What it is given otherwise, in words.

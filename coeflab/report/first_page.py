@@ -5,7 +5,6 @@ Everything that shows it takes it from here: terminal, notebook, HTML, PDF, and 
 
 from __future__ import annotations
 
-import re
 from collections.abc import Sequence
 from dataclasses import replace
 
@@ -271,7 +270,7 @@ def _sentence(study: Study, publications: PublishedColumns, rows: tuple[AnswerRo
     elif not valued:
         first = f"{name}: no wanted coefficient could be determined"
     else:
-        failing = {s for c in study.checks if c.severity is Severity.FAIL for s in re.findall(r"([^\s,]+)/", c.subject)}
+        failing = {c.campaign for c in study.checks if c.severity is Severity.FAIL}
         every, valued = valued, [r for r in valued if r.source not in failing]
         bounded = sum(r.u95 is not None for r in valued)
         of = (

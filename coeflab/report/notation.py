@@ -92,7 +92,7 @@ class VerbatimTexts:
 
 Run = str | Symbol | Raised | Command
 Given = ParamSpec("Given")
-Returned = TypeVar("Made")
+Returned = TypeVar("Returned")
 BEGINNING, SHORT = 20, 4
 # Nouns that a program may make of plain texts as well, and their fields that are words of a user.
 NAMED = (

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 
 from coeflab.core.errors import CoeflabError
 from coeflab.core.finding import Severity
@@ -40,5 +41,7 @@ def _findings(name: str, study: Study) -> tuple[Check, ...]:
 
 def _in_their_words(c: Check) -> Check:
     """Another package's finding: nothing in its texts is taken for a symbol."""
-    words = map(Verbatim, (c.statistic, c.rule, c.comment))
-    return Check(Verbatim(c.name), Verbatim(c.subject), c.severity, *words)
+    return replace(
+        c, name=Verbatim(c.name), subject=Verbatim(c.subject), statistic=Verbatim(c.statistic), rule=Verbatim(c.rule),
+        comment=Verbatim(c.comment),
+    )  # fmt: skip

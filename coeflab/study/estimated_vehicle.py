@@ -46,7 +46,7 @@ from coeflab.vehicle.force_law import ahead_from
 from coeflab.vehicle.from_shape import CLOSED, ESTIMATES, Stated, as_fit, by_series, equipped, lacking, weighed
 from coeflab.vehicle.held_to_model import Motions, held_to_model
 from coeflab.vehicle.merge import Merged, estimates_of, merged
-from coeflab.vehicle.parameter_file import ParameterFile, read_parameter_file, located_refusals
+from coeflab.vehicle.parameter_file import ParameterFile, located_refusals, read_parameter_file
 
 NOTHING = Stated()
 Progress = Callable[[str], None]

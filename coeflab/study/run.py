@@ -27,7 +27,7 @@ from coeflab.study.study import Conversion, Plan, Study
 from coeflab.study.symmetry import confirmed, of_bodies
 from coeflab.tables.reading import read_tables, table_at
 from coeflab.vehicle.assemble import PlannedParameterFile, assemble
-from coeflab.vehicle.parameter_file import read_parameter_file, located_refusals
+from coeflab.vehicle.parameter_file import located_refusals, read_parameter_file
 from coeflab.vehicle.published_values import compare, compare_set, read_references
 
 if TYPE_CHECKING:

@@ -117,7 +117,7 @@ SYMMETRIES = (PORT_STARBOARD, UP_DOWN, FOURFOLD)
 class Cut:
     """A symmetry plane through the body, on one side of which its forces are computed or measured.
 
-    The image in the plane has the same ``doubled`` components, and the opposite ``lost`` ones, which vanish in the sum.
+    The image in the plane has the same ``doubled`` components, and the opposite ``cancelled`` ones, which vanish in the sum.
 
     Attributes
     ----------

@@ -308,7 +308,7 @@ def centre_of(columns: Sequence[Assigned], frame: Axes | None) -> tuple[str, str
     return f"{sign}{words[below == (down > 0.0)]}", why, ""
 
 
-def _levers(data: Mapping[str, Array], meaning: Mapping[str, ColumnMap], frame: Axes | None) -> list[Evidence]:
+def _levers(data: Mapping[str, Array], meanings: Mapping[str, ColumnMap], frame: Axes | None) -> list[Evidence]:
     """Where along x the forces act, which M of a left-handed triad contradicts; in FRD once the axes are known."""
     found = {}
     for moment, force, sign in (("N", "Y", 1.0), ("M", "Z", -1.0)):
@@ -328,8 +328,8 @@ def _levers(data: Mapping[str, Array], meaning: Mapping[str, ColumnMap], frame: 
                 Evidence(f"{moment} / {force}: the force acts toward {'+' if arm > 0 else '-'}x of the reference point")
             )
             continue
-        kinds = {meaning[c].pure for c in (moment, force) if c in meaning}
-        coefficient = any(meaning[c].area for c in (moment, force) if c in meaning)
+        kinds = {meanings[c].pure for c in (moment, force) if c in meanings}
+        coefficient = any(meanings[c].area for c in (moment, force) if c in meanings)
         place = (
             "" if coefficient or len(kinds) != 1 else f" (x = {arm:.2g} {'of the length' if kinds == {True} else 'm'})"
         )

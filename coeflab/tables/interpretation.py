@@ -58,7 +58,7 @@ class Doubt:
     Attributes
     ----------
     column : RawColumn
-    meanings : ColumnMap
+    meaning : ColumnMap
         What it is by now, or, where its axis is contradicted, the rate about the other axis.
     why : str
     turns : str
@@ -68,7 +68,7 @@ class Doubt:
     """
 
     column: RawColumn
-    meanings: ColumnMap
+    meaning: ColumnMap
     why: str
     turns: str = ""
     another: bool = False
@@ -128,7 +128,7 @@ def interpreted(
     accept : bool
         Take whole proposals as confirmed.
     judged : collection of str, optional
-        Columns whose sign a person has settled, by default all of ``said``.
+        Columns whose sign a person has settled, by default all of ``meanings``.
     """
     in_frame = frame_of(_with_frame(raw, settings))
     cut = _cut_of(settings)
@@ -161,7 +161,7 @@ def interpreted(
         shows += tuple(_across(columns, frame, settings))
     names = [o.meaning.name for _, o in still if o.meaning and not o.whole]
     shows += tuple(
-        Evidence(f"warning: {key} = {meanings}, but {place}") for key, meanings, place in against_words(raw, settings)
+        Evidence(f"warning: {key} = {value}, but {place}") for key, value, place in against_words(raw, settings)
     )
     halved = [
         c.name for c, o in zip(raw.columns, offers, strict=True) if o.why.startswith(HALF_ONLY) and "se_" not in c.name

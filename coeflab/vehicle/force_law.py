@@ -24,7 +24,7 @@ from coeflab.law.symbols import ANGULAR, COMPONENTS, CONTROLS, LINEAR, MOTIONS, 
 from coeflab.law.terms import Factor, Term, parse_suffix
 from coeflab.vehicle.inertia import water_inertia
 from coeflab.vehicle.law_at_points import law_at_points
-from coeflab.vehicle.sources import acts_in, still_known, moved_by, name_of, steered, summed
+from coeflab.vehicle.sources import acts_in, moved_by, name_of, steered, still_known, summed
 
 if TYPE_CHECKING:
     from coeflab.core.types import Array

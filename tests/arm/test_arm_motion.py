@@ -27,9 +27,9 @@ from coeflab.arm.thrusters import (
     Thruster,
     TorqueThruster,
     VoltageThruster,
-    uncontrolled_directions,
     thrust_allocation,
     thruster_matrix,
+    uncontrolled_directions,
 )
 from coeflab.core.errors import InputError
 from coeflab.core.files import shipped

@@ -165,5 +165,5 @@ def test_water_that_nobody_stated_is_said(tmp_path: Path) -> None:
 
 def test_ballast_for_other_water_than_the_vehicles_is_said(tmp_path: Path) -> None:
     for density, said in ((998.2, False), (1025.0, True)):
-        lines = weighed(body(tmp_path, SHELL, BALLAST), Stated(), density).said
+        lines = weighed(body(tmp_path, SHELL, BALLAST), Stated(), density).statements
         assert any("ballast and flooded rooms are for water of 998.2 kg/m^3, assumed" in x for x in lines) == said

@@ -38,7 +38,7 @@ def test_what_equations_know_is_extrapolated_away() -> None:
     assert found.finest == pytest.approx(fine.volume / VOLUME - 1.0, rel=1e-9)
     assert abs(found.left) < 0.05 * abs(found.finest)
     assert np.diag(found.cost(np.eye(6))) == pytest.approx(2.0 * abs(found.left))
-    assert "the body's by its equations" in found.said
+    assert "the body's by its equations" in found.summary
 
 
 def test_one_mesh_lacks_what_it_lacks() -> None:
@@ -46,9 +46,9 @@ def test_one_mesh_lacks_what_it_lacks() -> None:
     found = volume_gap(body(BALL), fine, [corners(fine)])
     assert found.left == found.finest
     assert found.cost(np.diag([4.0, 1.0, 1.0, 1.0, 1.0, 1.0]))[0, 1] == pytest.approx(2.0 * STRONGEST * -found.finest)
-    assert "volume of the finest panels" in found.said
-    assert "estimate" not in found.said
-    assert "extrapolated" not in found.said
+    assert "volume of the finest panels" in found.summary
+    assert "estimate" not in found.summary
+    assert "extrapolated" not in found.summary
 
 
 def test_facets_alone_are_judged_by_their_angles() -> None:
@@ -56,7 +56,7 @@ def test_facets_alone_are_judged_by_their_angles() -> None:
     mesh = TriangleMesh(ball.vertices, ball.faces)
     found = volume_gap(body(mesh), mesh, [corners(mesh)])
     assert found.left == pytest.approx(mesh.volume / VOLUME - 1.0, rel=0.05)
-    assert "estimated by the angles" in found.said
+    assert "estimated by the angles" in found.summary
 
 
 def test_a_stated_volume_goes_before_the_angles() -> None:
@@ -64,8 +64,8 @@ def test_a_stated_volume_goes_before_the_angles() -> None:
     mesh = TriangleMesh(meshed(BALL, 4000).vertices, meshed(BALL, 4000).faces)
     found = volume_gap(body(mesh, 1.5 * mesh.volume, 1.02 * mesh.volume), mesh, [corners(mesh)])
     assert found.left == pytest.approx(1.0 / 1.02 - 1.0)
-    assert "that of printed_1" in found.said
-    assert "estimated" in volume_gap(body(mesh, 1.5 * mesh.volume), mesh, [corners(mesh)]).said
+    assert "that of printed_1" in found.summary
+    assert "estimated" in volume_gap(body(mesh, 1.5 * mesh.volume), mesh, [corners(mesh)]).summary
 
 
 @pytest.mark.parametrize("slender", [1.0, 1.5, 3.0, 6.0, 12.0])

@@ -350,7 +350,7 @@ def test_an_x_tail_has_root_two_of_a_cross() -> None:
                 [(c, share * float(np.sign(way[1] if c == "dr" else way[0]))) for c in names] if name in turning else []
             )
             one = foil(name, way, -3.5, 0.1, 0.25, 0.2, *(turns[0] if turns else ()))
-            foils.append(replace(one, beside=tuple(turns[1:])))
+            foils.append(replace(one, other_controls=tuple(turns[1:])))
         found = estimates_of(outline(*foils))
         return {c.symbol.removesuffix("'"): c.value for c in found.coefficients.coefficients}
 

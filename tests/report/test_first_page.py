@@ -11,8 +11,8 @@ import pytest
 
 from coeflab.cli import show
 from coeflab.cli.show import plain_lines
-from coeflab.core.finding import Finding, Severity
-from coeflab.core.table import in_digits_of, percent, with_u95
+from coeflab.core.finding import Severity
+from coeflab.core.table import Check, in_digits_of, percent, with_u95
 from coeflab.law.coefficient import Coefficient, Status
 from coeflab.report import first_page
 from coeflab.report.acceptance import Basis
@@ -374,10 +374,10 @@ def test_values_from_a_table_that_fails_a_check_are_not_counted():
     """A wrong length failed the checks of every table, and the sentence counted all of their coefficients."""
     study = small_study(FULL)
     campaign = study.fits[0].campaign
-    bad = Finding.of("sizes", f"tow X {campaign}/table.csv", Severity.FAIL)
+    bad = Check("sizes", "tow X", Severity.FAIL, "10 m", "1 m", "", campaign, f"{campaign}/table.csv")
     said = answer(replace(study, checks=(*study.checks, bad)), drawn=False).sentence
     assert said.startswith("Study tow: none of three wanted coefficients found, two from tables that fail a check;")
-    other = replace(study, checks=(*study.checks, Finding.of("sizes", "tow X other/table.csv", Severity.FAIL)))
+    other = replace(study, checks=(*study.checks, replace(bad, campaign="other", subject=campaign)))
     assert answer(other, drawn=False).sentence.startswith(
         "Study tow: two of three wanted coefficients found, each with U95;"
     )

@@ -20,7 +20,7 @@ from coeflab.report.figures.sweep import sweep_figure
 from coeflab.report.first_page import study_summary
 from coeflab.report.formats import html as page
 from coeflab.report.formats import pdf
-from coeflab.report.notation import Symbol, cell_runs, keeping, kept, runs, users_texts
+from coeflab.report.notation import Symbol, cell_runs, keeping, runs, users_texts, verbatim
 from coeflab.report.printable import shortened
 from coeflab.study.plan import read_plan
 from coeflab.study.run import run
@@ -45,7 +45,7 @@ ADJACENT = ["{}", "campaign {}", '"{}"', "{}/table.csv", "{}'s points", "Yv' of 
 def symbols(text: str, user: str) -> list[str]:
     """What is a symbol or an exponent in the text beside a user's."""
     with keeping(users_texts(Verbatim(user))):
-        return [p.text for p in runs(text, kept()) if not isinstance(p, str)]
+        return [p.text for p in runs(text, verbatim()) if not isinstance(p, str)]
 
 
 @pytest.mark.parametrize("user", HOSTILE)
@@ -69,7 +69,7 @@ def test_a_title_that_was_cut_is_still_the_users(longest: int) -> None:
 
 def test_cells_and_drawings() -> None:
     with keeping(users_texts(Verbatim("Yv"), Verbatim("U"))):
-        assert cell_runs("Yv", kept()) == ("Yv",)
+        assert cell_runs("Yv", verbatim()) == ("Yv",)
         assert (
             lettering.cell_html("Yv") == lettering.html("Yv") == lettering.drawn("Yv") == lettering.label("Yv") == "Yv"
         )

@@ -113,7 +113,7 @@ def test_rows_of_a_joint_fit_give_the_scatter_of_what_is_assumed() -> None:
     assert (own.noise, own.assumed, own.of_rows) == (0.01, ("Yv'",), {})
     wide, curves = Wanted("Yv'", -0.02, 1.0, {"Yv": (1.0, 1.0)}), [coefficient("Yv'", -0.02, 1.0)]
     sweeps = cf.fit("suboff_roddy_2").fits[0].sweeps
-    shown, loud = (next_tests(wide, curves, (), Ranges(), 5, n, beside=sweeps).best for n in (None, 0.2))
+    shown, loud = (next_tests(wide, curves, (), Ranges(), 5, n, others=sweeps).best for n in (None, 0.2))
     assert shown < 0.5 * loud
 
 

@@ -248,7 +248,7 @@ def test_without_control_and_thruster_it_coasts_and_says_what_is_missing(bare: B
 
 def test_added_mass_near_a_wall_goes_into_the_file(bare: Body, monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     few = partial(workbench_vehicle.wall_sweep, given={"panels": 1000})
-    monkeypatch.setattr(workbench_vehicle, "beside_walls", few)
+    monkeypatch.setattr(workbench_vehicle, "wall_sweep", few)
     made = from_shape(PLAN, bare, wall="bottom", distances=(2.0, 0.5)).parameter_files
     write_all(tmp_path, parameter_files_rendered(made.values()))
     hull = read_parameter_file(next(tmp_path.glob("*.parameters.json"))).added_mass

@@ -22,7 +22,7 @@ from coeflab.law.scaling import Conditions, Scaling
 from coeflab.tank.jobs import Job
 from coeflab.tank.openfoam.layers import FEWEST_ON_FOILS, GROWTH, layers, wall_unit
 from coeflab.tank.openfoam.mesh import mesh_job, mesh_name
-from coeflab.tank.openfoam.mesh_report import MADE, expected_cells, findings, mesh_ended, mesh_report
+from coeflab.tank.openfoam.mesh_report import MESH_FILE, expected_cells, findings, mesh_ended, mesh_report
 from coeflab.tank.openfoam.mesh_sizes import MeshKeys, mesh_sizes
 from coeflab.tank.tank import Grid, Tank
 from coeflab.tank.test_matrix import Half
@@ -233,13 +233,13 @@ def test_a_mesh_that_was_not_made_is_named(body: TowedBody, tmp_path: Path) -> N
     assert mesh_report(made.folder) is None
     for name, content, found in (
         ("planned.json", '{"cells": 10}', "nothing"), ("planned.json", "[1]", "a list"), ("planned.json", '{"cells": "many"}', "many"),
-        (MADE, '{"cells": 1.5}', "1.5"), (MADE, "{", "expected JSON"),
+        (MESH_FILE, '{"cells": 1.5}', "1.5"), (MESH_FILE, "{", "expected JSON"),
     ):  # fmt: skip
         (made.folder / name).write_text(content)
         with pytest.raises(InputError, match=name) as why:
-            mesh_report(made.folder) if name == MADE else expected_cells(made.folder)
+            mesh_report(made.folder) if name == MESH_FILE else expected_cells(made.folder)
         assert found in str(why.value)
-        (made.folder / MADE).unlink(missing_ok=True)
+        (made.folder / MESH_FILE).unlink(missing_ok=True)
 
 
 def carried_out(made: Job) -> Job:
@@ -307,5 +307,5 @@ def test_two_cores_make_the_mesh_that_one_was_expected_to(body: TowedBody, tmp_p
     before = expected_cells(made.folder)
     assert mesh_ended(made)[1] == ""
     assert expected_cells(made.folder) == pytest.approx(before, rel=0.25)
-    assert (made.folder / MADE).is_file()
+    assert (made.folder / MESH_FILE).is_file()
     assert not list(made.folder.glob("processor*"))

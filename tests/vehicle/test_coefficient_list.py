@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from coeflab.core.errors import InputError
-from coeflab.vehicle.coefficient_list import with_sheet, read_coefficient_list
+from coeflab.vehicle.coefficient_list import read_coefficient_list, with_sheet
 from coeflab.vehicle.own_numbers import typed_file
 from tests.cli.test_import import invoke
 from tests.tables.test_excel import rows, workbook

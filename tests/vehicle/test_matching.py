@@ -16,7 +16,7 @@ from coeflab.motion.behaviour import behaviour
 from coeflab.vehicle.comparison import compare
 from coeflab.vehicle.matching import plain_name
 from coeflab.vehicle.merge import merged
-from coeflab.vehicle.own_numbers import own_numbers, as_file, typed_file
+from coeflab.vehicle.own_numbers import as_file, own_numbers, typed_file
 from coeflab.vehicle.parameter_file import ParameterFile, ParameterPoint
 
 YV, NV, YR, NR, X = -0.031, -0.012, 0.006, -0.0055, 0.07  # X: in lengths, ahead; all made up

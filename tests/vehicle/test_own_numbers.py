@@ -20,7 +20,7 @@ from coeflab.law.scaling import Conditions, Scaling
 from coeflab.law.symbols import derivative
 from coeflab.vehicle.force_law import force_law
 from coeflab.vehicle.merge import merged
-from coeflab.vehicle.own_numbers import imported_file, mass_of, own_number, own_numbers, as_file, typed_file
+from coeflab.vehicle.own_numbers import as_file, imported_file, mass_of, own_number, own_numbers, typed_file
 from coeflab.vehicle.parameter_file import ParameterFile, read_parameter_file
 from coeflab.vehicle.plausibility import plausibility
 

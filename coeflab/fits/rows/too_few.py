@@ -11,7 +11,7 @@ from coeflab.law.symbols import primed
 
 FEW_ROWS = "sweep.few"
 MORE = "Run more points or ask for fewer terms."
-Fitted = TypeVar("Made")
+Fitted = TypeVar("Fitted")
 
 
 class TooFewRowsError(InputError):

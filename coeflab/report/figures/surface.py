@@ -26,8 +26,8 @@ from coeflab.report.figures.svg import settings, svg_text
 from coeflab.report.figures.variables import (
     axis_name,
     band_in_words,
-    draw_set_aside,
     beyond,
+    draw_set_aside,
     hollow,
     moving,
     response_name,

@@ -22,9 +22,9 @@ from coeflab.report.notation import (
     Run,
     cell_runs,
     keeping,
-    verbatim,
     runs,
     unit_runs,
+    verbatim,
 )
 from coeflab.report.printable import shortened, visible
 

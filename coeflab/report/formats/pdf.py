@@ -17,7 +17,7 @@ from coeflab.core.text.bounded import own_bytes
 from coeflab.core.version import VERSION
 from coeflab.report.document import Answer, AnswerRow, Document, Figure, Section
 from coeflab.report.figures.svg import plain, size_of
-from coeflab.report.notation import Command, Raised, Run, cell_runs, keeping, verbatim, runs, unit_runs
+from coeflab.report.notation import Command, Raised, Run, cell_runs, keeping, runs, unit_runs, verbatim
 from coeflab.report.printable import BREAK, CLOCK, WORD, breakable, glyphs, shortened
 
 summary = "one PDF to print and to keep: typeset tables, mathematics and vector figures"

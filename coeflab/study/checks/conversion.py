@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -22,7 +23,10 @@ WITHIN = 1e-6  # of the largest value of the component: copies are written with 
 
 def check(study: Study) -> Sequence[Check]:
     """One finding per component and copy."""
-    return [as_check("conversion", found) for pair in study.conversions for found in differences(pair)]
+    return [
+        replace(as_check("conversion", found), campaign=pair.copy.campaign)
+        for pair in study.conversions for found in differences(pair)
+    ]  # fmt: skip
 
 
 def differences(pair: Conversion) -> Iterator[Finding]:

@@ -7,7 +7,7 @@ A table is cut into sweeps, rows in which one variable alone changes, and every 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -409,7 +409,8 @@ def check(study: Study) -> Sequence[Check]:
     out: list[Check] = []
     for campaign in dict.fromkeys(t.campaign for t in study.tables):
         tables = [t for t in study.tables if t.campaign == campaign]
-        out += findings(tables, (study.plan.scaling or tables[0].scaling).length)
+        found = findings(tables, (study.plan.scaling or tables[0].scaling).length)
+        out += [replace(c, campaign=campaign) for c in found]
     return out
 
 
@@ -444,20 +445,22 @@ def findings(tables: Sequence[ForceTable], length: float) -> tuple[Check, ...]:
                 given.cells.append(_cell_text(table, component, row, cell))
                 given.components.append(component)
         _shared_errors(table, cells, rows, SHARED / sum(map(len, tables)))
+        on_table: list[Check] = []
         swapped = _exchanged(table, about, turned, length, cells)
         for row in {row for one in swapped for row in one.rows}:
             rows.pop(row, None)
-        out += [as_check("data_gate", one.finding) for one in swapped]
-        out += [as_check("data_gate", one) for one in grid_rows_elsewhere(table)]
+        on_table += [as_check("data_gate", one.finding) for one in swapped]
+        on_table += [as_check("data_gate", one) for one in grid_rows_elsewhere(table)]
         if len(rows) > MOST_LINES or (rows and len(table) > LARGEST_SWEEP):
-            out.append(_together(about, turned, length, rows))
+            on_table.append(_together(about, turned, length, rows))
         else:
             _slopes(about, turned, length, again, rows)
             _curvatures(table, cells, length, rows)
-            out += [_as_check(table, row, given, readings) for row, given in sorted(rows.items())]
-        out += _open_ends(table, cells, rows)
-        out += _pasted(table, again)
-        out += _astern(table, ahead)
+            on_table += [_as_check(table, row, given, readings) for row, given in sorted(rows.items())]
+        on_table += _open_ends(table, cells, rows)
+        on_table += _pasted(table, again)
+        on_table += _astern(table, ahead)
+        out += [replace(c, table=table.name) for c in on_table]
     out += _at_rest(tables)
     return (*out, _summary(tables[0].campaign, readings, missed, out))
 

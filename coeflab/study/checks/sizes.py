@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -71,7 +72,8 @@ def check(study: Study) -> Sequence[Check]:
             ))  # fmt: skip
     for table in study.tables:
         scaling = study.plan.scaling or table.scaling
-        out += [*_rates(table, scaling), *_levers(table, scaling)]
+        on_table = (*_rates(table, scaling), *_levers(table, scaling))
+        out += [replace(c, campaign=table.campaign, table=table.name) for c in on_table]
     for campaign, table in {t.campaign: t for t in study.tables}.items():
         scaling = study.plan.scaling or table.scaling
         if any(name in scaling.length_name for name in NOBODYS):

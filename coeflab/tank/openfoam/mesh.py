@@ -1,4 +1,4 @@
-"""Meshes of a towed body by snappyHexMesh: the case and its job. What became of it is judged in `coeflab.tank.openfoam.mesh_made`."""
+"""Meshes of a towed body by snappyHexMesh: the case and its job. What became of it is judged in `coeflab.tank.openfoam.mesh_report`."""
 
 from __future__ import annotations
 
