@@ -18,8 +18,9 @@ from coeflab.core.types import in_angles
 from coeflab.motion.behaviour import Behaviour
 from coeflab.motion.behaviour import behaviour as of_both
 from coeflab.vehicle import comparison as plain
-from coeflab.vehicle.comparison import ROUNDING, Verdict
+from coeflab.vehicle.comparison import ROUNDING
 from coeflab.vehicle.parameter_file import ParameterFile
+from coeflab.vehicle.shared_tables import Verdict
 
 if TYPE_CHECKING:
     import pandas as pd

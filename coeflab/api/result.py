@@ -341,7 +341,7 @@ class Result(Mapping[str, Coefficient]):
 
     def _plot_tied(self, symbol: str, ax: Axes | None) -> Axes | None:
         """The law of a term that is tied to a slope, over the points of that slope; None of any other coefficient."""
-        from coeflab.law.terms import read_term
+        from coeflab.law.named_terms import read_term
         from coeflab.report.plots import plot_tied
 
         c = self[symbol]

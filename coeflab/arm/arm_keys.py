@@ -9,7 +9,8 @@ from typing import Annotated, Any, NamedTuple
 import numpy as np
 
 from coeflab.bodies.body_file import InertiaMatrix
-from coeflab.bodies.closed_forms import MeridianIntegrals, cylinder_with_ends, strip_added_mass
+from coeflab.bodies.closed_forms.parts import cylinder_with_ends
+from coeflab.bodies.closed_forms.revolution import MeridianIntegrals, strip_added_mass
 from coeflab.bodies.pieces import Direction
 from coeflab.core import declarations as takes
 from coeflab.core.errors import InputError, shown

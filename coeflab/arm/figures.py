@@ -21,7 +21,7 @@ from coeflab.arm import kane
 from coeflab.arm.chain import Chain, Joint
 from coeflab.arm.control import ControlledRun, gain_of, most_thrust
 from coeflab.bodies.body import Body
-from coeflab.bodies.mesh import solids as silhouette
+from coeflab.bodies.mesh import silhouettes
 from coeflab.bodies.shape import Cylinder, Ellipsoid, Part, Parts
 from coeflab.core.errors import InputError
 from coeflab.core.text.bounded import own_text
@@ -29,8 +29,9 @@ from coeflab.core.types import Array, brief, locking
 from coeflab.motion.dynamics import rotations
 from coeflab.motion.trajectory import Trajectory
 from coeflab.report.document import Figure
-from coeflab.report.figures import body_scene
-from coeflab.report.figures.body import OBLIQUE, Sheet, View, outline_path
+from coeflab.report.figures import body_scene, form_facets
+from coeflab.report.figures.body import OBLIQUE
+from coeflab.report.figures.body_view import Sheet, View, outline_path
 from coeflab.report.figures.laws import Plot, Trace, laws_figure
 from coeflab.report.figures.palette import COLOURS
 from coeflab.report.figures.panel import WIDTH, drawing
@@ -147,7 +148,7 @@ def _in_place(drawn: Sheet, shape: Parts) -> None:
         form = part.form
         if not isinstance(form, Cylinder):
             continue
-        facets = body_scene.cut_cylinder_facets(form.radius, form.length, SLICES) @ part.rotation.T + part.centre
+        facets = form_facets.cut_cylinder_facets(form.radius, form.length, SLICES) @ part.rotation.T + part.centre
         seen = facets[in_sight(facets.mean(axis=1), hull, toward)]
         if len(seen):
             drawn.part(seen, body_scene.COLOUR_OF["cylinder"], False, False)
@@ -268,7 +269,7 @@ def _pale(drawn: Sheet, shape: Parts) -> None:
     """Parts as outlines with a pale fill, so that what is written over them can be read."""
     for part in shape.parts:
         path = outline_path(
-            silhouette.convex_outline(body_scene.part_facets(part).reshape(-1, 3), drawn.frame), drawn.move
+            silhouettes.convex_outline(body_scene.part_facets(part).reshape(-1, 3), drawn.frame), drawn.move
         )
         if path is not None:
             drawn.axes.add_patch(PathPatch(path, facecolor=COLOURS["band"], edgecolor="none", alpha=0.25, zorder=2))
@@ -286,7 +287,7 @@ def _corners(shape: Parts) -> Array:
             size = 2.0 * np.asarray(form.axes)
         else:
             size = np.ones(3)
-        out.append(body_scene.box_facets(size).reshape(-1, 3) @ part.rotation.T + part.centre)
+        out.append(form_facets.box_facets(size).reshape(-1, 3) @ part.rotation.T + part.centre)
     return np.vstack(out)
 
 
@@ -492,7 +493,7 @@ def animation(motion: ArmMotion, title: str, description: str) -> bytes:
             {
                 "colour": COLOURS["c" if k == 0 else "a"],
                 "facets": own.round(4).tolist(),
-                "normals": body_scene.normals(own).round(3).tolist(),
+                "normals": form_facets.normals(own).round(3).tolist(),
             }
         )
     poses = []
@@ -520,9 +521,9 @@ def animation(motion: ArmMotion, title: str, description: str) -> bytes:
 def _tube(part: Part) -> Array:
     form = part.form
     return (
-        body_scene.cylinder_facets(form.radius, form.length)
+        form_facets.cylinder_facets(form.radius, form.length)
         if isinstance(form, Cylinder)
-        else body_scene.box_facets(np.ones(3))
+        else form_facets.box_facets(np.ones(3))
     )
 
 

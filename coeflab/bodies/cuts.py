@@ -13,8 +13,8 @@ from typing import Any
 import numpy as np
 
 from coeflab.bodies.mesh.mesh import TriangleMesh
-from coeflab.bodies.mesh.solids import polygons
-from coeflab.bodies.strips import contours
+from coeflab.bodies.mesh.silhouettes import polygons
+from coeflab.bodies.mesh_sections import contours
 from coeflab.core.errors import InputError
 from coeflab.core.types import Array
 

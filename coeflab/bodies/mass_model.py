@@ -9,7 +9,8 @@ from typing import Annotated, Any
 
 import numpy as np
 
-from coeflab.bodies.mesh.mesh import TriangleMesh, mesh_integrals
+from coeflab.bodies.mesh.integrals import mesh_integrals
+from coeflab.bodies.mesh.mesh import TriangleMesh
 from coeflab.bodies.mesh.solids import form_solid
 from coeflab.bodies.pieces import Piece
 from coeflab.bodies.shape import Box, Cylinder, Ellipsoid

@@ -15,7 +15,7 @@ from itertools import pairwise
 import numpy as np
 from numpy.polynomial import Polynomial
 
-from coeflab.bodies.closed_forms import graded_nodes
+from coeflab.bodies.closed_forms.revolution import graded_nodes
 from coeflab.bodies.shape import Revolution, within_reach
 from coeflab.core.declarations import Angle, Declaration, Length, Pure
 from coeflab.core.errors import InputError

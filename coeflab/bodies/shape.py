@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from coeflab.bodies.closed_forms import MeridianIntegrals, graded_nodes, meridian_integrals
+from coeflab.bodies.closed_forms.revolution import MeridianIntegrals, graded_nodes, meridian_integrals
 from coeflab.bodies.forms import (
     CLASSES,
     Bar,

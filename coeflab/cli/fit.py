@@ -90,7 +90,7 @@ def command(
             _diagnose(study)
         if figure is not None:
             show.path(figure)
-    show.exit_code(study, strict)
+    show.exit_code(study.failed, study.warned, strict)
 
 
 def given(words: list[str], equations: list[str]) -> tuple[list[str], dict[str, int | float | str]]:

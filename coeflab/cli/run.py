@@ -68,7 +68,7 @@ def carry_out(plan: Plan | Path, out: Path | None, as_json: bool, strict: bool =
             show.command_line("Appendix", f"coeflab report {shlex.quote(typed_as)} --full")
     for refused in study.refused:
         show.error(f"error: {refused.why}")
-    show.exit_code(study, strict)
+    show.exit_code(study.failed, study.warned, strict)
 
 
 def summarise(study: Study, folder: Path) -> None:

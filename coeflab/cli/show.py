@@ -22,7 +22,6 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from coeflab.api.parameters import ParameterFile
-    from coeflab.api.studies import Study
     from coeflab.core.finding import Finding
     from coeflab.core.table import Check, Line, Table
 
@@ -408,14 +407,14 @@ def failed(found: Sequence[Check]) -> bool:
     return any(c.severity is Severity.FAIL for c in found)
 
 
-def exit_code(study: Study, strict: bool) -> None:
-    """End with 1 where a finding of a study fails, or warns and that is strictly forbidden.
+def exit_code(failed: bool, warned: bool, strict: bool) -> None:
+    """End with 1 where a finding fails, or warns and no warning is allowed.
 
     Raises
     ------
     typer.Exit
     """
-    if study.failed or (strict and study.warned):
+    if failed or (strict and warned):
         raise typer.Exit(1)
 
 

@@ -8,7 +8,7 @@ from functools import partial
 import numpy as np
 from numpy.typing import NDArray
 
-from coeflab.bodies.closed_forms import ellipsoid_added_mass
+from coeflab.bodies.closed_forms.ellipsoid import ellipsoid_added_mass
 from coeflab.bodies.outline import Bluff, Outline
 from coeflab.core.types import Array, brief, locking
 from coeflab.estimates import Contribution, Water

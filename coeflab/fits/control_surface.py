@@ -32,7 +32,8 @@ from coeflab.fits.results.fit_result import FitResult, result_of
 from coeflab.fits.results.fitted_model import FittedModel, coefficient_of, residuals_in_words
 from coeflab.fits.rows.regression import Area, Rows, collect, model_of
 from coeflab.fits.rows.sweeps import AREAS, PRIMES, area_of, area_settings, only_moving
-from coeflab.fits.statistics.linear_model import fit_linear, t_probability
+from coeflab.fits.statistics.linear_model import fit_linear
+from coeflab.fits.statistics.robust_errors import t_probability
 from coeflab.law.coefficient import Coefficient, Status
 from coeflab.law.scaling import Scaling
 from coeflab.law.terms import Term, design

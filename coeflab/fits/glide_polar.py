@@ -32,7 +32,8 @@ from coeflab.fits.results.fit_result import FitResult, result_of
 from coeflab.fits.results.fitted_model import residuals_in_words
 from coeflab.fits.rows.regression import Rows, model_of, variable
 from coeflab.fits.rows.sweeps import only_moving, without_blanks
-from coeflab.fits.statistics.linear_model import fit_linear, t_probability
+from coeflab.fits.statistics.linear_model import fit_linear
+from coeflab.fits.statistics.robust_errors import t_probability
 from coeflab.law.coefficient import Coefficient, Parts, Status
 from coeflab.law.domain import Domain, Extrapolation
 from coeflab.law.symbols import FORCES, LINEAR

@@ -30,9 +30,7 @@ from coeflab.fits.rows.sweeps import secant
 from coeflab.fits.rows.too_few import each_with_rows
 from coeflab.fits.statistics.remainder import companions
 from coeflab.law.coefficient import Coefficient, Status
-from coeflab.law.scaling import Scaling
-from coeflab.law.symbols import COMPONENTS, MOTIONS
-from coeflab.law.terms import (
+from coeflab.law.named_terms import (
     SETS,
     Equation,
     NamedTerm,
@@ -42,6 +40,8 @@ from coeflab.law.terms import (
     read_terms,
     split_equations,
 )
+from coeflab.law.scaling import Scaling
+from coeflab.law.symbols import COMPONENTS, MOTIONS
 from coeflab.tables.force_table import AT_REST, ForceTable
 
 

@@ -17,7 +17,7 @@ from coeflab.fits.results.fitted_model import FittedModel, coefficient_of, in_wo
 from coeflab.fits.rows.regression import ANGLES, Area, collect, model_of
 from coeflab.fits.rows.sweeps import AREAS, PRIMES, allowed, area_of, area_settings, named_response, only_moving
 from coeflab.fits.rows.too_few import each_with_rows
-from coeflab.fits.statistics.linear_model import sharpened
+from coeflab.fits.statistics.extended_precision import sharpened
 from coeflab.law.coefficient import Coefficient, Status
 from coeflab.law.domain import Extrapolation
 from coeflab.law.scaling import Scaling

@@ -29,9 +29,10 @@ from coeflab.fits.rows.regression import model_of
 from coeflab.fits.rows.too_few import TooFewRowsError, each_with_rows
 from coeflab.fits.statistics.sparse_selection import Optimizer, Selection, describe, library, scaled, select, twins
 from coeflab.law.coefficient import Coefficient
+from coeflab.law.named_terms import symmetric
 from coeflab.law.scaling import Scaling
 from coeflab.law.symbols import COMPONENTS
-from coeflab.law.terms import Term, design, symmetric
+from coeflab.law.terms import Term, design
 from coeflab.tables.force_table import ForceTable, counted_once
 
 summary = "sparse force law: the terms of a library that the data need (pysindy)"

@@ -21,7 +21,8 @@ from coeflab.fits.results.fitted_model import FittedModel, in_words, residuals_i
 from coeflab.fits.rows import sweeps
 from coeflab.fits.rows.regression import MOMENT_COEFFICIENTS, Area, Rows, collect, model_of
 from coeflab.fits.rows.too_few import TooFewRowsError, each_with_rows
-from coeflab.fits.statistics.linear_model import nested_test, sharpened
+from coeflab.fits.statistics.extended_precision import sharpened
+from coeflab.fits.statistics.nested_test import nested_test
 from coeflab.law.domain import Extrapolation
 from coeflab.law.scaling import Scaling
 from coeflab.law.symbols import PORT_STARBOARD

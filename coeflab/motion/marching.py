@@ -18,7 +18,7 @@ from coeflab.core.texts import input_error
 from coeflab.core.types import Array, dataclass, locked
 from coeflab.law.rigid_body import momentum_quadratics, rigid_body_inertia
 from coeflab.law.symbols import CONTROLS
-from coeflab.motion.dynamics import VELOCITY, Dynamics, forms_of_pairs, rates_of_one
+from coeflab.motion.dynamics import VELOCITY, Dynamics, forms_of_pairs
 from coeflab.motion.integrators import fixed_step as plain
 from coeflab.motion.integrators.adaptive import march_adaptive
 from coeflab.motion.integrators.fixed_step import fast_eigenvalues, largest_step
@@ -33,6 +33,7 @@ from coeflab.motion.manoeuvre import (
     ramp,
     standing_orders,
 )
+from coeflab.motion.rates_of_one import rates_of_one
 from coeflab.motion.trajectory import Ended, Trajectory, ended_by_tables, outside
 from coeflab.motion.vehicle import Vehicle
 

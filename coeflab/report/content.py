@@ -23,14 +23,8 @@ from coeflab.report.notation import keeping, users_texts
 from coeflab.report.reproduction import digest_of, reproduction, shipped_name
 from coeflab.report.sections.added_mass import added_mass_sections
 from coeflab.report.sections.body import body_sections
-from coeflab.report.sections.campaign import (
-    anchor,
-    budget_sections,
-    campaign_section,
-    filled,
-    says_nothing,
-    tow_sections,
-)
+from coeflab.report.sections.budgets import budget_sections, tow_sections
+from coeflab.report.sections.campaign import anchor, campaign_section, filled, says_nothing
 from coeflab.report.sections.coefficients import coefficients_section
 from coeflab.report.sections.conventions import conventions_section
 from coeflab.report.sections.data_quality import quality_sections

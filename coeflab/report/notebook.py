@@ -293,7 +293,7 @@ def model(found: FittedModel) -> tuple[Part, ...]:
 @_card
 def budget(found: Budget) -> tuple[Part, ...]:
     """The parts of a U95 as bars and in a table."""
-    from coeflab.report.sections.campaign import tornado_figure
+    from coeflab.report.figures.tornado import tornado_figure
     from coeflab.report.tables.budgets import budget as of_budget
 
     figure = replace(tornado_figure(found, DRAWN), caption="") if found.parts else None

@@ -29,7 +29,7 @@ from coeflab.tables.settings import of_datum, read_settings
 from coeflab.tables.words.points import POINT_OF
 from coeflab.vehicle.assemble import PlannedParameterFile
 from coeflab.vehicle.inertia import ACCELERATIONS, MEASURED
-from coeflab.vehicle.parameter_file import SHIPPED
+from coeflab.vehicle.schema_versions import SHIPPED
 
 _NAME = re.compile(r"^[\w][\w .+-]{0,79}$")
 

@@ -22,8 +22,9 @@ from coeflab.vehicle.comparison import coefficient_set
 from coeflab.vehicle.force_law import force_at_edges, full_force, points_of, spoken
 from coeflab.vehicle.law_at_points import caps, held_ranges, law_at_points
 from coeflab.vehicle.matching import by_plain_names, plain_name, spelled_as, sums_in_words
-from coeflab.vehicle.parameter_file import SCHEMA_VERSION, ParameterFile
+from coeflab.vehicle.parameter_file import ParameterFile
 from coeflab.vehicle.parameter_parts import ParameterCovariance
+from coeflab.vehicle.schema_versions import SCHEMA_VERSION
 from coeflab.vehicle.sources import Moved, acts_in
 
 if TYPE_CHECKING:

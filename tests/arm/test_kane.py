@@ -9,7 +9,7 @@ import pytest
 
 from coeflab.arm import compiled, kane
 from coeflab.arm.chain import Chain, Flow, Link, Strip, in_frame_0
-from coeflab.bodies.closed_forms import ellipsoid_added_mass
+from coeflab.bodies.closed_forms.ellipsoid import ellipsoid_added_mass
 from coeflab.law.rigid_body import axes_in_earth
 from tests.arm.chains import (
     PAPER_SPEEDS,

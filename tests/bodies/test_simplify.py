@@ -16,7 +16,8 @@ from coeflab.bodies.readers import read_body
 from coeflab.bodies.readers.primitives import read
 from coeflab.bodies.shape import Box, Cylinder, Ellipsoid, Plate, shadow
 from coeflab.bodies.simplify import simplify as study
-from coeflab.bodies.simplify.simplify import NamedBox, simplify
+from coeflab.bodies.simplify.boxes import NamedBox
+from coeflab.bodies.simplify.simplify import simplify
 from coeflab.core.axes import Datum
 from coeflab.core.errors import InputError
 from coeflab.core.files import shipped
@@ -252,7 +253,7 @@ def test_a_body_far_off_right_angles_is_not_tidied() -> None:
 
 def test_many_faces_are_decimated_and_said(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(study, "MOST_FACES", 2000)
-    monkeypatch.setattr(study, "KEPT_FACES", 1500)
+    monkeypatch.setattr(study, "SIMPLIFIED_FACES", 1500)
     found = simplify(body(Manifold.sphere(1.0, 64)))
     assert "faces decimated to" in found.statements[0]
     assert found.part_file().decode().count("decimated") == 1

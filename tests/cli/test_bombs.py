@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from coeflab.bodies.mesh.file import glb_faces, obj_faces, stl_faces
+from coeflab.bodies.mesh.declared_faces import glb_faces, obj_faces, stl_faces
 from coeflab.core import limits
 from coeflab.core.errors import InputError
 from coeflab.core.text.delimited import read_cells

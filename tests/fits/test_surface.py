@@ -15,7 +15,7 @@ from coeflab.core.files import shipped
 from coeflab.fits import FITS
 from coeflab.fits.results.fit_result import FitResult
 from coeflab.fits.statistics.least_squares import factorise, solve
-from coeflab.fits.statistics.linear_model import bell_mccaffrey, hc_variance, t_factor
+from coeflab.fits.statistics.robust_errors import bell_mccaffrey, hc_variance, t_factor
 from coeflab.fits.surface import sum_of_slices
 from coeflab.law.terms import design
 from coeflab.law.transforms import wind_errors, wind_forces

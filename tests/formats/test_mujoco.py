@@ -10,7 +10,7 @@ from types import ModuleType
 import numpy as np
 import pytest
 
-from coeflab.bodies.closed_forms import ellipsoid_added_mass
+from coeflab.bodies.closed_forms.ellipsoid import ellipsoid_added_mass
 from coeflab.core.errors import InputError
 from coeflab.core.text.xml import parse_xml
 from coeflab.formats.export import export

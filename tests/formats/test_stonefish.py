@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 import trimesh
 
-from coeflab.bodies.mesh.mesh import mesh_integrals
+from coeflab.bodies.mesh.integrals import mesh_integrals
 from coeflab.core.errors import InputError
 from coeflab.core.text.xml import parse_xml
 from coeflab.formats.export import export

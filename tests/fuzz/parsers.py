@@ -11,7 +11,7 @@ from typing import Any
 from coeflab.arm.arm_file import read_arm
 from coeflab.bodies.mesh.file import load
 from coeflab.bodies.readers import read_body
-from coeflab.bodies.simplify.simplify import parse_box, read_boxes
+from coeflab.bodies.simplify.boxes import parse_box, read_boxes
 from coeflab.core.arithmetic import ArithmeticProblem, evaluate
 from coeflab.core.axes import angle_sign, parse_axes
 from coeflab.core.errors import InputError
@@ -27,8 +27,8 @@ from coeflab.formats.model_files import read_model_file
 from coeflab.glider.glider import read_glider
 from coeflab.identify.series import read_series
 from coeflab.identify.tuning_plan import read_tuning_plan
+from coeflab.law.named_terms import read_equation, read_term
 from coeflab.law.symbols import derivative
-from coeflab.law.terms import read_equation, read_term
 from coeflab.motion.vehicle import vehicle
 from coeflab.study.plan import read_plan
 from coeflab.tables.column_map import read_column_map

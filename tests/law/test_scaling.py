@@ -167,7 +167,7 @@ NO_PRIMES = {
     "tables/mapping.py": (1, "dynamic pressure on the reference area that a person states for a coefficient"),
     "tables/openfoam_forces.py": (1, "dynamic pressure on the Aref that forceCoeffs states, at its magUInf"),
     "law/scaling.py": (1, "the unit itself"),
-    "bodies/closed_forms.py": (1, "a closed form of a body alone, printed in primes"),
+    "bodies/closed_forms/parts.py": (1, "a closed form of a body alone, printed in primes"),
     "tank/solvers/openfoam.py": (1, "a bound on forces beyond which a run has diverged"),
     "fits/rows/regression.py": (
         1,

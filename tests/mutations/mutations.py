@@ -19,7 +19,7 @@ from coeflab.glider.space import SpaceBody
 from coeflab.identify import thruster
 from coeflab.law import rigid_body
 from coeflab.law.rigid_body import momentum_quadratics, weighed
-from coeflab.motion import media, steady_state
+from coeflab.motion import media, steady_turns
 from coeflab.motion.integrators.adaptive import _Phase
 from coeflab.motion.manoeuvres import steady_motion
 from coeflab.published import parameter_files
@@ -328,7 +328,7 @@ def huuv_law(function: Any, old: str, new: str, times: int = 1) -> Callable[[Sub
 
 def reversed_coriolis(_: Suboff) -> Verdicts:
     """All products of velocities in the equations of the turns: no power is lost."""
-    features, sign = steady_state.features, np.where(np.arange(13) < 5, -1.0, 1.0)
+    features, sign = steady_turns.features, np.where(np.arange(13) < 5, -1.0, 1.0)
 
     def reversed_products(velocity: Any) -> Any:
         force, by = features(velocity)
@@ -394,7 +394,7 @@ HUUV = (
     (
         "sign of (m + m_x) u r",
         huuv_law(
-            steady_state.features, '(1, ("m", "mx"), -u * r, (-r, none, -u))', '(1, ("m", "mx"), u * r, (r, none, u))'
+            steady_turns.features, '(1, ("m", "mx"), -u * r, (-r, none, -u))', '(1, ("m", "mx"), u * r, (r, none, u))'
         ),
     ),
     ("sign of C_A of the parameter file", reversed_added),

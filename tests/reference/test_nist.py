@@ -15,8 +15,9 @@ import numpy as np
 import pytest
 
 from coeflab.core.types import Array
+from coeflab.fits.statistics.extended_precision import sharpened
 from coeflab.fits.statistics.least_squares import BLOCK, classical_variance, factorise, solve
-from coeflab.fits.statistics.linear_model import fit_linear, sharpened
+from coeflab.fits.statistics.linear_model import fit_linear
 from coeflab.law.terms import Term, design
 
 DATA = Path(__file__).parent / "data" / "nist"

@@ -9,7 +9,7 @@ import pytest
 
 from coeflab.law.coefficient import COVERS
 from coeflab.report.figures.palette import COLOURS
-from coeflab.report.sections.campaign import tornado_figure
+from coeflab.report.figures.tornado import tornado_figure
 from coeflab.report.sections.coefficients import coefficients_section
 from coeflab.report.tables import budgets as budget_tables
 from coeflab.report.tables import results

@@ -13,8 +13,8 @@ from coeflab.motion.uncertainty.spread import Importance
 from coeflab.report.document import Figure, Panel, Series
 from coeflab.report.figures.motion import track_figure
 from coeflab.report.figures.series import MOST, curve
+from coeflab.report.figures.tornado import tornado_figure
 from coeflab.report.figures.uncertainty import bars
-from coeflab.report.sections.campaign import tornado_figure
 from tests.report.studies import FULL, budgets, small_study
 from tests.report.test_motion_figure import LENGTH, moved
 

@@ -50,7 +50,8 @@ from coeflab.study.study import Plan, Study
 from coeflab.vehicle.force_law import ahead_from, full_force
 from coeflab.vehicle.from_shape import Stated, spread_of, weighed
 from coeflab.vehicle.merge import merged
-from coeflab.vehicle.parameter_file import SCHEMA_VERSION, ParameterFile, read_parameter_file
+from coeflab.vehicle.parameter_file import ParameterFile, read_parameter_file
+from coeflab.vehicle.schema_versions import SCHEMA_VERSION
 
 pytestmark = pytest.mark.usefixtures("in_a_shell")  # messages as a command prints them
 

@@ -10,7 +10,7 @@ from typing import Any, cast
 
 import numpy as np
 
-from coeflab.bodies.closed_forms import ellipsoid_added_mass
+from coeflab.bodies.closed_forms.ellipsoid import ellipsoid_added_mass
 from coeflab.core.axes import Datum
 from coeflab.law.scaling import Conditions, Scaling
 from coeflab.tank.jobs import Job

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from coeflab.bodies.body import Body
-from coeflab.bodies.closed_forms import ellipsoid_added_mass
+from coeflab.bodies.closed_forms.ellipsoid import ellipsoid_added_mass
 from coeflab.bodies.mesh.mesh import TriangleMesh
 from coeflab.bodies.shape import Ellipsoid, Parts, Revolution, Shape, shadow
 from coeflab.bodies.volume_moments import second_moments

@@ -10,10 +10,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from coeflab.bodies.body import Body
-from coeflab.bodies.closed_forms import lamb_end_correction, strip_added_mass
+from coeflab.bodies.closed_forms.revolution import lamb_end_correction, strip_added_mass
 from coeflab.bodies.mesh.mesh import TriangleMesh
 from coeflab.bodies.shape import Revolution, Shape, as_revolution
-from coeflab.bodies.strips import Strips, ellipsoid_correction, joints, strips
+from coeflab.bodies.stations import joints
+from coeflab.bodies.strips import Strips, ellipsoid_correction, strips
 from coeflab.core.errors import InputError
 from coeflab.core.options import bounded, one_of, parse_options
 from coeflab.law.added_mass import AddedMass, composed

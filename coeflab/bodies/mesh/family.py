@@ -9,11 +9,12 @@ from itertools import product
 
 import numpy as np
 
+from coeflab.bodies.mesh.crossing_faces import crossing_faces
 from coeflab.bodies.mesh.decimation import decimated
-from coeflab.bodies.mesh.mesh import TriangleMesh, mesh_integrals
+from coeflab.bodies.mesh.integrals import mesh_integrals
+from coeflab.bodies.mesh.mesh import TriangleMesh
 from coeflab.bodies.mesh.meshing import FEWEST, meshed
 from coeflab.bodies.mesh.solids import divided, solid, surface
-from coeflab.bodies.mesh.topology import crossing_faces
 from coeflab.bodies.panel_solver import influence
 from coeflab.bodies.shape import Shape
 from coeflab.core.errors import InputError

@@ -12,11 +12,11 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from coeflab.bodies.mesh.crossing_faces import crossing_faces
 from coeflab.bodies.mesh.solids import Solid, solid, surface
 from coeflab.bodies.mesh.topology import (
     Filled,
     Labels,
-    crossing_faces,
     degenerate,
     edges,
     filled,

@@ -23,7 +23,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from coeflab.bodies.body import Body
-from coeflab.bodies.mesh.mesh import TriangleMesh, enclosed, facet_deficit
+from coeflab.bodies.mesh.facet_volume import enclosed, facet_deficit
+from coeflab.bodies.mesh.mesh import TriangleMesh
 from coeflab.core.types import Array, brief
 
 STRONGEST, SAME_BODY = 2.0, 0.05

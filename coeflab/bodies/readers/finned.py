@@ -17,9 +17,11 @@ import numpy as np
 
 from coeflab.bodies.body import Body, Configuration
 from coeflab.bodies.body_file import ShapedBodyFile
-from coeflab.bodies.mesh.mesh import TriangleMesh, enclosed
-from coeflab.bodies.mesh.meshing import lofted, surface_of, united
+from coeflab.bodies.mesh.facet_volume import enclosed
+from coeflab.bodies.mesh.mesh import TriangleMesh
+from coeflab.bodies.mesh.meshing import surface_of, united
 from coeflab.bodies.mesh.particulars import computed
+from coeflab.bodies.mesh.structured_surface import lofted
 from coeflab.bodies.outline import Foil, Outline, RingWing, Sections
 from coeflab.bodies.outlining import SLENDER, Radius, Trapezoid, of_parts, radius_towards, round_hull, with_controls
 from coeflab.bodies.pieces import HULL, Control, Piece, hull_piece, part_pieces

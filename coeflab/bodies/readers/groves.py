@@ -22,9 +22,10 @@ from numpy.polynomial import Polynomial
 
 from coeflab.bodies.body import Body, Configuration
 from coeflab.bodies.body_file import ShapedBodyFile
-from coeflab.bodies.closed_forms import graded_nodes
+from coeflab.bodies.closed_forms.revolution import graded_nodes
 from coeflab.bodies.mesh.mesh import TriangleMesh
-from coeflab.bodies.mesh.meshing import lofted, meshed, united
+from coeflab.bodies.mesh.meshing import meshed, united
+from coeflab.bodies.mesh.structured_surface import lofted
 from coeflab.bodies.outline import Foil, Outline
 from coeflab.bodies.outlining import Trapezoid, radius_towards, round_hull, with_controls
 from coeflab.bodies.pieces import Control, Piece, hull_piece

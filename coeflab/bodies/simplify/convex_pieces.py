@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from coeflab.bodies.mesh.solids import Solid, hull_of, oriented_box, pieces, simplified, surface
+from coeflab.bodies.mesh.oriented_box import oriented_box
+from coeflab.bodies.mesh.solids import Solid, hull_of, pieces, simplified, surface
 from coeflab.bodies.simplify.seams import CREASE, dihedral
 
 MOST_PLANES, MOST_CUTS, BENT = 24, 48, 0.03

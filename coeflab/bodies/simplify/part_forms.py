@@ -13,19 +13,10 @@ from typing import Any
 
 import numpy as np
 
-from coeflab.bodies.mesh.mesh import mesh_integrals
-from coeflab.bodies.mesh.solids import (
-    Outline,
-    Solid,
-    Surface,
-    convex_outline,
-    form_solid,
-    mesh_outline,
-    oriented_box,
-    revolved,
-    smallest_rectangle,
-    surface,
-)
+from coeflab.bodies.mesh.integrals import mesh_integrals
+from coeflab.bodies.mesh.oriented_box import oriented_box, smallest_rectangle
+from coeflab.bodies.mesh.silhouettes import Outline, convex_outline, mesh_outline
+from coeflab.bodies.mesh.solids import Solid, Surface, form_solid, revolved, surface
 from coeflab.bodies.shape import Bar, Box, Cylinder, Ellipsoid, Form, Plate, Tube, Turned, shadow
 from coeflab.bodies.simplify.round_hull import round_hull
 from coeflab.core.types import Array, brief

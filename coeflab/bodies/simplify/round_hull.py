@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from coeflab.bodies.mesh.mesh import mesh_integrals
+from coeflab.bodies.mesh.integrals import mesh_integrals
 from coeflab.core.types import Array, Faces, brief
 
 RAYS = 72  # from the axis, 5 deg apart

@@ -35,7 +35,7 @@ from coeflab.fits.statistics.linear_model import LinearFit, fit_linear
 from coeflab.fits.statistics.remainder import Block, judged, left_out
 from coeflab.fits.statistics.stacked import fit_stacked, freed, influence, part_of, scatter, spread_by_run, stack
 from coeflab.law.domain import Domain, Extrapolation
-from coeflab.law.terms import Equation
+from coeflab.law.named_terms import Equation
 
 EVERY_THIRD = "Every third point left out"
 

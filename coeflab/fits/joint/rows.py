@@ -22,9 +22,10 @@ from coeflab.fits.rows.regression import Area, Rows, collect, response, variable
 from coeflab.fits.rows.too_few import TooFewRowsError
 from coeflab.fits.statistics.groups import noise_of_groups
 from coeflab.fits.statistics.least_squares import Index
+from coeflab.law.named_terms import Equation, NamedTerm, read_term
 from coeflab.law.scaling import Scaling
 from coeflab.law.symbols import COMPONENTS
-from coeflab.law.terms import Equation, NamedTerm, design, read_term
+from coeflab.law.terms import design
 from coeflab.tables.force_table import AT_REST, ForceTable, counted_once
 
 

@@ -22,12 +22,14 @@ from coeflab.core.cards import html_by
 from coeflab.core.texts import text_of
 from coeflab.core.types import Array, dataclass, in_angles, locking
 from coeflab.fits.statistics.groups import predict_left_out, thirds
-from coeflab.fits.statistics.linear_model import LinearFit, fit_linear, t_probability
+from coeflab.fits.statistics.linear_model import LinearFit, fit_linear
 from coeflab.fits.statistics.remainder import Remainder
+from coeflab.fits.statistics.robust_errors import t_probability
 from coeflab.law.coefficient import Coefficient, Parts, Status
 from coeflab.law.domain import Domain
+from coeflab.law.named_terms import canonical
 from coeflab.law.symbols import ANGULAR, MOTIONS
-from coeflab.law.terms import Term, canonical, design
+from coeflab.law.terms import Term, design
 from coeflab.tables.force_table import AT_REST, SAME_SIZE, ForceTable
 
 

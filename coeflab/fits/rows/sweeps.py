@@ -30,9 +30,9 @@ from coeflab.fits.results.fitted_model import FittedModel
 from coeflab.fits.rows.regression import WIND, Area, Rows, response
 from coeflab.fits.statistics.diagnostics import levels
 from coeflab.fits.statistics.slopes import is_one_sided
+from coeflab.law.named_terms import canonical
 from coeflab.law.scaling import Scaling
 from coeflab.law.symbols import COMPONENTS, FORCES
-from coeflab.law.terms import canonical
 from coeflab.tables.force_table import AT_REST, SAME_SIZE, Exclusion, ForceTable, counted_once
 
 INCIDENCE = {"dr": "v", "ds": "w", "db": "w"}

@@ -20,7 +20,7 @@ from scipy.special import fdtrc
 
 from coeflab.core.types import Array
 from coeflab.fits.statistics.least_squares import BLOCK, Factorised, Index, factorise
-from coeflab.fits.statistics.linear_model import FULL_LEVERAGE
+from coeflab.fits.statistics.robust_errors import FULL_LEVERAGE
 
 FEWEST = 3
 QUIETEST = 1e-3

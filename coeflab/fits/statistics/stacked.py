@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from coeflab.core.types import Array, dataclass
-from coeflab.fits.statistics import linear_model
+from coeflab.fits.statistics import linear_model, robust_errors
 from coeflab.fits.statistics.groups import constrained_space
 from coeflab.fits.statistics.least_squares import Factorised, Index, factorise
 
@@ -181,7 +181,7 @@ def _violated(f: Factorised, contrast: Array, right: Array, y: Array, run: Index
     spread, freedom = _by_run(f, contrast @ f.back, weighted - f.basis @ (f.basis.T @ weighted), run, n_runs)
     error, violation = np.linalg.norm(spread, axis=1), np.abs(contrast @ inner - right)
     rounding = ROUNDING * (np.abs(contrast) @ np.abs(inner) + np.abs(right))
-    by_chance = linear_model.t_probability(
+    by_chance = robust_errors.t_probability(
         violation / np.where(error > rounding, error, 1.0), np.maximum(freedom, 1e-3)
     )
     exact = np.where(violation <= 10.0 * rounding, 1.0, 0.0)

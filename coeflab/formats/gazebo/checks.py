@@ -8,7 +8,7 @@ from xml.etree.ElementTree import Element
 
 import numpy as np
 
-from coeflab.bodies.closed_forms import ellipsoid_added_mass
+from coeflab.bodies.closed_forms.ellipsoid import ellipsoid_added_mass
 from coeflab.core.finding import Finding, Severity
 from coeflab.core.table import Check, as_check
 from coeflab.core.text.xml import numbers, read_xml

@@ -33,18 +33,8 @@ from coeflab.formats.exported_law import (
 from coeflab.formats.lacking_law import in_header
 from coeflab.formats.loss import missing_water
 from coeflab.formats.xdyn.actuators import command_names, held_lines, limited, thrust_lines
-from coeflab.formats.xdyn.law import (
-    ADDED,
-    BUOYANCY,
-    DAMPING,
-    FUNCTIONS,
-    HERE,
-    RIGID,
-    THRUST,
-    XdynBody,
-    settled,
-    xdyn_body,
-)
+from coeflab.formats.xdyn.expressions import settled
+from coeflab.formats.xdyn.law import ADDED, BUOYANCY, DAMPING, FUNCTIONS, HERE, RIGID, THRUST, XdynBody, xdyn_body
 from coeflab.law.added_mass import definiteness
 from coeflab.law.force_law import ForceTerm
 from coeflab.law.rigid_body import MassProperties, about_another, rigid_body_inertia

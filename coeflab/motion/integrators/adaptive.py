@@ -12,7 +12,8 @@ import numpy as np
 
 from coeflab.core.types import Array, dataclass
 from coeflab.motion import manoeuvre
-from coeflab.motion.dynamics import Dynamics, rates_of_one
+from coeflab.motion.dynamics import Dynamics
+from coeflab.motion.rates_of_one import rates_of_one
 
 
 def march_adaptive(

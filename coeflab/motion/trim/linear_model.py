@@ -19,7 +19,7 @@ from coeflab.core.files import write_atomically
 from coeflab.core.missed import suggesting
 from coeflab.core.texts import input_error, text_of
 from coeflab.core.types import Array, dataclass, in_angles
-from coeflab.motion.dynamics import NEUTRAL, STEP, Slopes, modes, participation
+from coeflab.motion.small_motions import NEUTRAL, STEP, Slopes, modes, participation
 from coeflab.motion.trim.linear_files import ENDINGS, mat, npz
 from coeflab.motion.trim.trim import PLACES, Trim
 

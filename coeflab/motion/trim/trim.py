@@ -24,7 +24,8 @@ from coeflab.core.types import Array, dataclass, in_angles
 from coeflab.law.force_law import WIND
 from coeflab.law.symbols import COMPONENTS, CONTROLS, LINEAR, MOTIONS
 from coeflab.law.transforms import incidence
-from coeflab.motion.dynamics import Slopes, from_euler, growth, modes, slopes
+from coeflab.motion.dynamics import from_euler
+from coeflab.motion.small_motions import Slopes, growth, modes, slopes
 from coeflab.motion.trajectory import outside_in_words, refusal
 from coeflab.motion.trim.operating_point import Equation, OperatingPoint, Unknown, nearest, operating_point
 from coeflab.motion.vehicle import Vehicle

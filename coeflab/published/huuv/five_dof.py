@@ -153,7 +153,7 @@ def simple_masses(body: Body, density: float) -> dict[str, float]:
     -----
     The paper gives the mast on its end no m_z and no k of its own to the plates' turning; both are left out here too.
     """
-    from coeflab.bodies.closed_forms import plate_coefficient
+    from coeflab.bodies.closed_forms.parts import plate_coefficient
 
     shape = body.require_shape()
     parts = shape.parts if isinstance(shape, Parts) else ()
@@ -335,7 +335,7 @@ def steady(huuv: FiveDof, delta: Array, tau: Array, start: Array) -> tuple[Array
     """
     from scipy.optimize import root
 
-    from coeflab.motion.dynamics import linearised
+    from coeflab.motion.small_motions import linearised
 
     found, growth = np.full((len(start), 5), np.nan), np.full(len(start), np.nan)
     for i, (angle, push) in enumerate(zip(delta, tau, strict=True)):

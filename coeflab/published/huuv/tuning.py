@@ -20,7 +20,7 @@ from coeflab.identify.tuning import (
     together_in_words,
     tuned_parameters,
 )
-from coeflab.motion.steady_state import COEFFICIENTS, sensitivities, steady_turns, turn_figures
+from coeflab.motion.steady_turns import COEFFICIENTS, sensitivities, steady_turns, turn_figures
 from coeflab.published.huuv.model import MATLAB, TRACKER, Huuv, Turns, thrust, thrust_rates
 from coeflab.published.publication import Row, publication
 from coeflab.report.acceptance import Basis, ComparedTable

@@ -15,9 +15,10 @@ from coeflab.bodies.mesh.solids import Surface
 from coeflab.bodies.shape import Parts
 from coeflab.core.types import Array
 from coeflab.report.document import Figure
-from coeflab.report.figures.body import MARGIN, SIDE, TOP, Sheet, View
-from coeflab.report.figures.body_scene import picture_surface
+from coeflab.report.figures.body import MARGIN, SIDE, TOP
+from coeflab.report.figures.body_view import Sheet, View
 from coeflab.report.figures.palette import COLOURS
+from coeflab.report.figures.part_pictures import picture_surface
 from coeflab.report.figures.svg import paper, settings, svg_text
 from coeflab.report.notation import as_users_wrote
 

@@ -12,7 +12,7 @@ from coeflab.bodies.shape import Parts, Shape
 from coeflab.core.types import Array, dataclass
 from coeflab.core.wording import collected
 from coeflab.report.document import Axis, Layer, Scene
-from coeflab.report.figures.body_scene import COLOUR_OF, POOR, form_name, is_poor, part_facets
+from coeflab.report.figures.part_pictures import COLOUR_OF, POOR, form_name, is_poor, part_facets
 
 FACES = 9000  # of a mesh: more are decimated
 HULL_FACES, FIN_FACES = 7500, 800  # of a piece from equations

@@ -11,7 +11,7 @@ from coeflab.core.errors import CoeflabError
 from coeflab.core.table import ABSENT, Table, number
 from coeflab.core.wording import collected, grouped, in_sentences, listed
 from coeflab.law.symbols import primed
-from coeflab.motion.steady_state import DRAWN, RootLocus, root_locus
+from coeflab.motion.root_locus import DRAWN, RootLocus, root_locus
 from coeflab.report.document import Figure, Section
 from coeflab.report.figures.root_locus import IN_PLANE, root_locus_figure
 from coeflab.report.tables.added_mass import mass_table

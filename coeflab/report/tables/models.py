@@ -23,13 +23,15 @@ from coeflab.law.symbols import CONTROLS, FLOW_ANGLES
 from coeflab.law.terms import design
 from coeflab.report.figures.variables import domain_in_words
 from coeflab.report.texts import table_of, text_of
-from coeflab.vehicle.comparison import ROUNDING, Verdict
+from coeflab.vehicle.comparison import ROUNDING
+from coeflab.vehicle.shared_tables import Verdict
 
 if TYPE_CHECKING:
     from coeflab.fits.results.fit_result import FitResult, Pooling
     from coeflab.fits.results.fitted_model import FittedModel, OutOfSample
     from coeflab.motion.behaviour import Behaviour
-    from coeflab.vehicle.comparison import Compared, ComparedModel, Comparison
+    from coeflab.vehicle.compared_models import ComparedModel
+    from coeflab.vehicle.comparison import Compared, Comparison
     from coeflab.vehicle.parameter_file import ParameterFile
 
 
