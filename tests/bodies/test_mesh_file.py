@@ -236,7 +236,7 @@ def test_the_stated_memory_is_not_exceeded(tmp_path: Path, name: str) -> None:
 
 
 def test_text_has_a_bound(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(mesh_headers, "LARGEST_TEXT", 1000)
+    monkeypatch.setattr(declared_faces, "LARGEST_TEXT", 1000)
     for name in ("ascii.stl", "obj", "ascii.ply"):
         refused(written(tmp_path, f"ball.{name}", content(FORMATS[name])), "MB of text", "binary STL or PLY")
 
