@@ -82,7 +82,7 @@ class Comparison(plain.Comparison):
         >>> cf.compare("remus100", "remus100").summary().headers[0]
         ''
         """
-        from coeflab.report.tables.models import coefficients, comparable, differ
+        from coeflab.report.tables.compared_files import coefficients, comparable, differ
 
         every = coefficients(self)
         return every if wide else comparable(every, differ(self))

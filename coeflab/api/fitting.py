@@ -15,7 +15,7 @@ from coeflab.api.result import Result
 from coeflab.core.errors import InputError
 from coeflab.core.machine import one_thread
 from coeflab.fits import FITS, JOINT, USUAL
-from coeflab.fits.joint.rows import one_length
+from coeflab.fits.joint.one_point import one_length
 from coeflab.law.scaling import Scaling, require_hull
 from coeflab.study.fitting import fitted, refuse_empty, rejoined
 from coeflab.tables.force_table import ForceTable

@@ -35,8 +35,9 @@ from coeflab.law.symbols import primed
 from coeflab.law.water import conditions_of
 from coeflab.study.estimated_vehicle import estimated
 from coeflab.study.study import Plan
-from coeflab.vehicle.assemble import PlannedParameterFile, assemble
+from coeflab.vehicle.assemble import assemble
 from coeflab.vehicle.from_shape import Stated
+from coeflab.vehicle.gathered import PlannedParameterFile
 from coeflab.vehicle.merge import merged
 from coeflab.vehicle.own_numbers import OwnNumber, as_file, own_numbers, typed_surfaces, typed_thrusters
 from coeflab.vehicle.parameter_file import ParameterFile

@@ -30,13 +30,15 @@ from coeflab.motion.dynamics import rotations
 from coeflab.motion.trajectory import Trajectory
 from coeflab.report.document import Figure
 from coeflab.report.figures import body_scene, form_facets
+from coeflab.report.figures.artists import text_width
 from coeflab.report.figures.body import OBLIQUE
 from coeflab.report.figures.body_view import Sheet, View, outline_path
 from coeflab.report.figures.laws import Plot, Trace, laws_figure
 from coeflab.report.figures.palette import COLOURS
 from coeflab.report.figures.panel import WIDTH, drawing
 from coeflab.report.figures.series import STYLES
-from coeflab.report.figures.svg import settings, sheet, svg_text, text_width
+from coeflab.report.figures.svg import settings, svg_text
+from coeflab.report.figures.svg_file import sheet
 
 TEMPLATE = Path(__file__).with_name("motion.html")
 ALONG, AROUND = 10, 20  # facets of the hull that the page draws

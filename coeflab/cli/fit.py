@@ -159,7 +159,7 @@ def _draw(study: Study, symbols: list[str], file: Path) -> None:
     from coeflab.report.figures.estimator import estimator_figure
     from coeflab.report.figures.files import as_kind
     from coeflab.report.figures.model import distinct, model_figures
-    from coeflab.report.figures.svg import sheet
+    from coeflab.report.figures.svg_file import sheet
     from coeflab.report.figures.sweep import sweep_figure
     from coeflab.report.sections.oscillations import oscillation_figures
 

@@ -207,7 +207,7 @@ def _print(result: Simulation, written: list[Path]) -> None:
 def _write(result: Simulation, folder: Path, to: str) -> list[Path]:
     from coeflab.core.files import write_all
     from coeflab.report.figures.motion import motion_figures
-    from coeflab.report.figures.svg import sheet
+    from coeflab.report.figures.svg_file import sheet
     from coeflab.report.tables.motion import motion_csv, motion_parquet
 
     name = result.manoeuvre.name

@@ -29,9 +29,9 @@ from coeflab.core.options import measured, one_of, parse_options, words
 from coeflab.core.texts import input_error
 from coeflab.core.types import dataclass
 from coeflab.fits.results.fit_result import FitResult, result_of
-from coeflab.fits.results.fitted_model import residuals_in_words
+from coeflab.fits.results.lack_of_fit import residuals_in_words
+from coeflab.fits.rows.only_moving import only_moving, without_blanks
 from coeflab.fits.rows.regression import Rows, model_of, variable
-from coeflab.fits.rows.sweeps import only_moving, without_blanks
 from coeflab.fits.statistics.linear_model import fit_linear
 from coeflab.fits.statistics.robust_errors import t_probability
 from coeflab.law.coefficient import Coefficient, Parts, Status

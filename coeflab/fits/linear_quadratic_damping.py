@@ -21,7 +21,8 @@ from coeflab.core.options import one_of, parse_options, words
 from coeflab.core.types import Array
 from coeflab.core.wording import finite
 from coeflab.fits.results.fit_result import FitResult, independent, result_of
-from coeflab.fits.results.fitted_model import FittedModel, coefficient_of, residuals_in_words
+from coeflab.fits.results.fitted_model import FittedModel, coefficient_of
+from coeflab.fits.results.lack_of_fit import residuals_in_words
 from coeflab.fits.rows.regression import Rows, model_of
 from coeflab.law.coefficient import Coefficient, Status
 from coeflab.law.scaling import Scaling

@@ -24,7 +24,9 @@ from coeflab.core.texts import input_error, text_of
 from coeflab.core.types import Array
 from coeflab.fits.joint.rows import JointRows, joint_rows, measured, moving
 from coeflab.fits.results.fit_result import FitResult, independent, result_of
-from coeflab.fits.results.fitted_model import FittedModel, coefficient_of, every_third_point, residuals_in_words
+from coeflab.fits.results.fitted_model import FittedModel, coefficient_of
+from coeflab.fits.results.lack_of_fit import residuals_in_words
+from coeflab.fits.results.out_of_sample import every_third_point
 from coeflab.fits.rows.regression import model_of
 from coeflab.fits.rows.too_few import TooFewRowsError, each_with_rows
 from coeflab.fits.statistics.sparse_selection import Optimizer, Selection, describe, library, scaled, select, twins

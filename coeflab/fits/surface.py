@@ -17,8 +17,9 @@ from coeflab.core.options import bounded, measured, one_of, parse_options, words
 from coeflab.core.texts import input_error
 from coeflab.core.types import Array
 from coeflab.fits.results.fit_result import FitResult, result_of
-from coeflab.fits.results.fitted_model import FittedModel, in_words, residuals_in_words
-from coeflab.fits.rows import sweeps
+from coeflab.fits.results.fitted_model import FittedModel, in_words
+from coeflab.fits.results.lack_of_fit import residuals_in_words
+from coeflab.fits.rows import only_moving
 from coeflab.fits.rows.regression import MOMENT_COEFFICIENTS, Area, Rows, collect, model_of
 from coeflab.fits.rows.too_few import TooFewRowsError, each_with_rows
 from coeflab.fits.statistics.extended_precision import sharpened
@@ -71,7 +72,7 @@ class Options:
     parity: tuple[str, ...] = words()
     extrapolation: str = one_of("refuse", "refuse", "clamp", "taper")
     area: float = measured(0.0, 0.0, 1e6, "area")
-    area_name: str = one_of(sweeps.PRIMES, *sweeps.AREAS)
+    area_name: str = one_of(only_moving.PRIMES, *only_moving.AREAS)
 
 
 def _sided(chosen: Options) -> list[str]:
@@ -111,12 +112,12 @@ def _fitted(rows: Rows, chosen: Options, form: str, area: Area) -> FittedModel |
     """One form; None where it has no terms or more than the rows can carry."""
     variables = tuple(rows.x)
     rule = _parities(chosen, rows.response)
-    sweeps.check_varies(rows)
+    only_moving.check_varies(rows)
     every = power_terms(variables, chosen.degree, form, rule)
     terms = _mirrored(every, chosen, rows.response)
     if not terms or len(terms) >= len(rows.y):
         return None
-    name = sweeps.named_response(rows.response, area)
+    name = only_moving.named_response(rows.response, area)
     symbols = tuple(f"{name}_{t if t.factors else 0}" for t in terms)
     parities = "".join(f", {r} in {v}" for v, r in rule.items() if r != "full")
     if len(terms) < len(every):
@@ -255,24 +256,24 @@ def fit(tables: Sequence[ForceTable], scaling: Scaling, options: Mapping[str, An
     InputError
         No such rows, a response that the tables lack, more terms than rows of every response, or an area without its name.
     """
-    chosen = parse_options(Options, sweeps.without_blanks(options, "parity"), "surface")
+    chosen = parse_options(Options, only_moving.without_blanks(options, "parity"), "surface")
     if len(set(chosen.variables)) != 2 or len(chosen.variables) != 2:
         raise input_error(
             "fits.two_different_ones", column="surface.variables", what=", ".join(chosen.variables) or "none"
         )
-    area = sweeps.area_of(chosen.area, chosen.area_name, scaling)
-    used, notes = sweeps.only_moving(tables, chosen.variables, scaling.length)
-    names = chosen.responses or tuple(n for n in USUAL if sweeps.allowed(used, n, area))
+    area = only_moving.area_of(chosen.area, chosen.area_name, scaling)
+    used, notes = only_moving.only_moving(tables, chosen.variables, scaling.length)
+    names = chosen.responses or tuple(n for n in USUAL if only_moving.allowed(used, n, area))
     if not names:
         raise InputError("no force that the tables give", f"one of {', '.join(USUAL)}", column="surface.responses")
     first = tables[0]
     settings = {
         "variables": " ".join(chosen.variables), "degree": str(chosen.degree), "form": chosen.form,
         "parity": " ".join(chosen.parity) or "port-starboard symmetry", "extrapolation": chosen.extrapolation,
-        **sweeps.area_settings(area),
+        **only_moving.area_settings(area),
     }  # fmt: skip
     models, few = each_with_rows(
-        tuple(dict.fromkeys(names)), lambda n: _model(sweeps.allowed(used, n, area) or used, n, chosen, area, notes), first.campaign
+        tuple(dict.fromkeys(names)), lambda n: _model(only_moving.allowed(used, n, area) or used, n, chosen, area, notes), first.campaign
     )  # fmt: skip
     return result_of(
         "surface",

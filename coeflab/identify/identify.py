@@ -14,11 +14,12 @@ from coeflab.core.machine import one_thread
 from coeflab.core.options import bounded, measured, one_of, parse_options, text, words
 from coeflab.core.texts import remark
 from coeflab.fits.sparse import scaled_optimizer
+from coeflab.identify.candidate_terms import candidate_terms
+from coeflab.identify.candidates import ALONG
 from coeflab.identify.force_balance import (
     NOISE,
     STRETCH,
     Candidate,
-    candidate_terms,
     centres,
     correlated,
     differenced,
@@ -27,21 +28,8 @@ from coeflab.identify.force_balance import (
     stretches,
     weak,
 )
-from coeflab.identify.identification import (
-    ALONG,
-    FEWEST_STRETCHES,
-    HOW,
-    Balanced,
-    Found,
-    Identified,
-    IdentifiedTerm,
-    Outcome,
-    Products,
-    exchangeable,
-    identify,
-    multiples,
-    together_in_words,
-)
+from coeflab.identify.identification import FEWEST_STRETCHES, Found, Products, exchangeable, identify, multiples
+from coeflab.identify.identified import HOW, Balanced, Identified, IdentifiedTerm, Outcome, together_in_words
 from coeflab.identify.series import ANGLES, MotionSeries, read_series
 from coeflab.law.added_mass import potential_part
 from coeflab.law.symbols import COMPONENTS, CONTROLS, MOTIONS, primed

@@ -18,7 +18,8 @@ from coeflab.core.text.csv_rows import csv_text
 from coeflab.core.texts import remark
 from coeflab.core.types import Array, brief
 from coeflab.core.wording import file_stem
-from coeflab.identify.output_error import Estimate, Problem, by_likelihood, estimate, problem
+from coeflab.identify.output_error import Estimate, by_likelihood, estimate
+from coeflab.identify.output_problem import Problem, problem
 from coeflab.identify.tuning import (
     TunedParameter,
     TunedQuantity,

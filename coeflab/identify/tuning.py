@@ -17,7 +17,8 @@ from coeflab.core.table import number, plus_minus
 from coeflab.core.types import Array, brief, locking
 from coeflab.core.version import VERSION
 from coeflab.core.wording import finite, listed
-from coeflab.identify.output_error import Estimate, Problem
+from coeflab.identify.output_error import Estimate
+from coeflab.identify.output_problem import Problem
 from coeflab.identify.tuning_plan import Place, TuningPlan, moved
 from coeflab.law.added_mass import potential_part
 from coeflab.law.coefficient import Parts, Status

@@ -23,7 +23,7 @@ from coeflab.report.answer_table import LONGEST, MOST_COLUMNS, MOST_MODELS, MOST
 from coeflab.report.document import Answer, AnswerRow, Chip, Document, Figure
 from coeflab.report.figures.first_page import axes_figure, forest_figure, renamed, shares_figure, slope_figure
 from coeflab.report.figures.model import model_figures
-from coeflab.report.figures.svg import size_of
+from coeflab.report.figures.svg_file import size_of
 from coeflab.report.first_page_notes import MOST_NAMED, NO_DATA, PublishedColumns, notes
 from coeflab.report.notation import keeping, users_texts
 from coeflab.report.reproduction import digest_of

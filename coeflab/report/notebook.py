@@ -25,7 +25,8 @@ from coeflab.core.types import Array
 from coeflab.core.wording import counted, listed
 from coeflab.law.coefficient import Coefficient, CoefficientSet
 from coeflab.law.symbols import COMPONENTS, MOTIONS, primed
-from coeflab.report.notation import cell_html, html, keeping, unit_html, users_texts
+from coeflab.report.markup import cell_html, html, unit_html
+from coeflab.report.notation import keeping, users_texts
 from coeflab.report.tables import nouns as tables
 
 if TYPE_CHECKING:
@@ -89,7 +90,7 @@ def _picture(figure: Figure | None) -> Part:
     if figure is None:
         return ""
     from coeflab.report.figures.first_page import renamed
-    from coeflab.report.figures.svg import size_of
+    from coeflab.report.figures.svg_file import size_of
 
     caption = f"<figcaption>{html(figure.caption)}</figcaption>" if figure.caption else ""
     widest = ACROSS * size_of(figure.svg)[0]

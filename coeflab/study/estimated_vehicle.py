@@ -41,9 +41,10 @@ from coeflab.motion.turn_limits import linear_growth
 from coeflab.motion.uncertainty.uncertainty import Carried, Question, uncertainty
 from coeflab.study.study import FromShape, Plan, Study
 from coeflab.tables.reading import table_at
-from coeflab.vehicle.assemble import PlannedParameterFile, assemble
+from coeflab.vehicle.assemble import assemble
 from coeflab.vehicle.force_law import ahead_from
 from coeflab.vehicle.from_shape import CLOSED, ESTIMATES, Stated, as_fit, by_series, equipped, lacking, weighed
+from coeflab.vehicle.gathered import PlannedParameterFile
 from coeflab.vehicle.held_to_model import Motions, held_to_model
 from coeflab.vehicle.merge import Merged, estimates_of, merged
 from coeflab.vehicle.parameter_file import ParameterFile, located_refusals, read_parameter_file

@@ -27,7 +27,7 @@ from coeflab.tables.campaign import FILE, read_campaign
 from coeflab.tables.reading import suited_fit, table_at
 from coeflab.tables.settings import of_datum, read_settings
 from coeflab.tables.words.points import POINT_OF
-from coeflab.vehicle.assemble import PlannedParameterFile
+from coeflab.vehicle.gathered import PlannedParameterFile
 from coeflab.vehicle.inertia import ACCELERATIONS, MEASURED
 from coeflab.vehicle.schema_versions import SHIPPED
 

@@ -17,7 +17,8 @@ from coeflab.core.files import shipped, stem
 from coeflab.core.finding import Finding
 from coeflab.core.machine import one_thread
 from coeflab.core.provenance import InputFile, sha256_of
-from coeflab.fits.joint.rows import joint_name, one_length
+from coeflab.fits.joint.one_point import one_length
+from coeflab.fits.joint.rows import joint_name
 from coeflab.law.coefficient import Coefficient, Status
 from coeflab.law.symbols import derivative
 from coeflab.study.checking import checked
@@ -26,7 +27,8 @@ from coeflab.study.fitting import FEWEST, fitted, refuse_empty, rejoined
 from coeflab.study.study import Conversion, Plan, Study
 from coeflab.study.symmetry import confirmed, of_bodies
 from coeflab.tables.reading import read_tables, table_at
-from coeflab.vehicle.assemble import PlannedParameterFile, assemble
+from coeflab.vehicle.assemble import assemble
+from coeflab.vehicle.gathered import PlannedParameterFile
 from coeflab.vehicle.parameter_file import located_refusals, read_parameter_file
 from coeflab.vehicle.published_values import compare, compare_set, read_references
 

@@ -14,7 +14,7 @@ from coeflab.bodies.closed_forms.parts import plate_added_mass
 from coeflab.bodies.mesh.mesh import TriangleMesh
 from coeflab.bodies.mesh.meshing import meshed
 from coeflab.bodies.mesh.structured_surface import box_surface
-from coeflab.bodies.panel_solver.influence import slivers
+from coeflab.bodies.panel_solver.panels import slivers
 from coeflab.bodies.readers import read_body
 from coeflab.bodies.shape import Box, Cylinder, Ellipsoid, Form, Part, Parts, Shape
 from coeflab.core.errors import InputError

@@ -7,7 +7,7 @@ import pytest
 
 from coeflab.bodies.mesh.integrals import mesh_integrals
 from coeflab.bodies.mesh.structured_surface import box_surface
-from coeflab.bodies.panel_solver.influence import (
+from coeflab.bodies.panel_solver.panels import (
     bisected,
     panels_of,
     sharpness,

@@ -19,7 +19,7 @@ from coeflab.core.text.json import parse_json
 from coeflab.core.text.toml import read_toml
 from coeflab.core.text.xml import parse_xml
 from coeflab.core.text.yaml import parse_yaml
-from coeflab.formats.uuv_simulator.law import Xacro
+from coeflab.formats.uuv_simulator.xacro import Xacro
 from coeflab.motion.uncertainty.sobol import draw_counts, drawn_counts
 from coeflab.vehicle.parameter_file import read_parameter_file
 from tests.cli.conftest import COEFLAB, Run

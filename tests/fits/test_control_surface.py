@@ -16,7 +16,7 @@ from coeflab.fits.statistics.robust_errors import bell_mccaffrey, hc_variance, t
 from coeflab.law.terms import design
 from coeflab.law.transforms import body_forces
 from coeflab.tables.force_table import ForceTable
-from coeflab.vehicle.assemble import recorded
+from coeflab.vehicle.recorded import recorded
 from tests.fits.shipped import rows, tables
 
 # Chosen in cfd_data/make_synthetic_vehicles.py: the HUUV paper plots its own and prints none.

@@ -14,8 +14,9 @@ from hypothesis import strategies as st
 from coeflab.core.errors import InputError
 from coeflab.fits import FITS
 from coeflab.fits.results.fit_result import FitResult
-from coeflab.fits.results.fitted_model import FittedModel, every_third_point
-from coeflab.fits.rows.sweeps import explain, secant
+from coeflab.fits.results.fitted_model import FittedModel
+from coeflab.fits.results.out_of_sample import every_third_point
+from coeflab.fits.rows.secant import explain, secant
 from coeflab.fits.rows.too_few import FEW_ROWS
 from coeflab.fits.statistics.stacked import freed
 from coeflab.law.coefficient import Coefficient, Status

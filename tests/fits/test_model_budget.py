@@ -17,7 +17,7 @@ from coeflab.tables.campaign import InputUncertainty
 from coeflab.tables.force_table import ForceTable
 from coeflab.tables.importers import PlannedTable
 from coeflab.tables.reading import read_tables
-from coeflab.vehicle.assemble import record
+from coeflab.vehicle.recorded import record
 from tests.report.studies import FULL, LENGTH, small_table
 
 EXPERIMENT = Source("tank", kind="experiment")

@@ -24,7 +24,7 @@ from coeflab.core.text.xml import parse_xml
 from coeflab.core.text.yaml import parse_yaml
 from coeflab.core.units import parse_header, quantity, typed
 from coeflab.formats.model_files import read_model_file
-from coeflab.glider.glider import read_glider
+from coeflab.glider.glider_file import read_glider
 from coeflab.identify.series import read_series
 from coeflab.identify.tuning_plan import read_tuning_plan
 from coeflab.law.named_terms import read_equation, read_term

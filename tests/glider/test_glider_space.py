@@ -11,7 +11,8 @@ import pytest
 from coeflab.core.errors import InputError
 from coeflab.core.files import shipped
 from coeflab.glider.glide import GlideRun, steady_glides, steady_spirals
-from coeflab.glider.glider import Glider, read_glider
+from coeflab.glider.glider import Glider
+from coeflab.glider.glider_file import read_glider
 from coeflab.glider.motion import Leg, Setting, momentum, rates
 from coeflab.glider.simulators.glider import simulate
 from coeflab.glider.space import (

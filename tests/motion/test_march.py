@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from coeflab.motion.ensemble import Ensemble, alone
 from coeflab.motion.integrators.adaptive import march_adaptive
 from coeflab.motion.integrators.fixed_step import march as plain
 from coeflab.motion.manoeuvre import (
@@ -22,7 +23,7 @@ from coeflab.motion.manoeuvre import (
     orders_of,
     ramp,
 )
-from coeflab.motion.marching import Ensemble, alone, march, march_by_tolerance
+from coeflab.motion.marching import march, march_by_tolerance
 from tests.motion.fleet import RATE, RUDDER, SPEED, coasting, massive, swimmer, zigzag
 
 KERNELS = ("numpy", "compiled")

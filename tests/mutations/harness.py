@@ -33,7 +33,8 @@ from coeflab.core.table import Check
 from coeflab.formats.stated_file import Stated, stated_file
 from coeflab.glider.flight import Flown
 from coeflab.glider.glide import GlideRun
-from coeflab.glider.glider import Glider, gliders_at, read_glider
+from coeflab.glider.glider import Glider
+from coeflab.glider.glider_file import gliders_at, read_glider
 from coeflab.law.rigid_body import MassProperties
 from coeflab.law.scaling import Conditions, Scaling
 from coeflab.motion.simulators import SIMULATORS

@@ -27,6 +27,7 @@ from coeflab.published.flyingfish import equations as aerial
 from coeflab.published.flyingfish import model as flyingfish_model
 from coeflab.published.flyingfish import motions
 from coeflab.published.flyingfish.model import FlyingFish
+from coeflab.published.flyingfish.rotors import rotor_wrench
 from coeflab.published.huuv import five_dof, five_dof_file
 from coeflab.published.huuv import model as huuv_model
 from tests.mutations.arm import URV
@@ -261,7 +262,7 @@ FLYINGFISH = (
     ("mass +5 %", constant("mass", TWENTIETH)),
     (
         "sign of the lever in equation 40",
-        fish_law(flyingfish_model.rotor_wrench, "lever * np.sum(across", "-lever * np.sum(across"),
+        fish_law(rotor_wrench, "lever * np.sum(across", "-lever * np.sum(across"),
     ),
     (
         "sign of m u r in equation 52",

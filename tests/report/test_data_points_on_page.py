@@ -7,7 +7,7 @@ import re
 import numpy as np
 import pytest
 
-from coeflab.identify.identification import Identified, IdentifiedTerm, Outcome
+from coeflab.identify.identified import Identified, IdentifiedTerm, Outcome
 from coeflab.identify.identified_figures import identified_figure
 from coeflab.motion.uncertainty.spread import Importance
 from coeflab.report.document import Figure, Panel, Series

@@ -17,7 +17,7 @@ from coeflab.report.figures.model import distinct, model_figures
 from coeflab.report.figures.palette import COLOURS
 from coeflab.report.figures.slices import slices_of
 from coeflab.report.figures.surface import is_surface
-from coeflab.report.figures.svg import sheet
+from coeflab.report.figures.svg_file import sheet
 from coeflab.report.figures.variables import (
     axis_name,
     band_in_words,

@@ -17,7 +17,7 @@ from coeflab.core.files import shipped
 from coeflab.core.provenance import Source
 from coeflab.fits import FITS
 from coeflab.report.figures.hull_scene import FACES, Mark, _even, hull_scene
-from coeflab.report.figures.surface import surface_scene
+from coeflab.report.figures.surface_scene import surface_scene
 from coeflab.report.figures.sweep import sweep_figure
 from coeflab.report.formats.html import panels_json, scene_json
 from coeflab.report.sections.body import hull_marks

@@ -18,8 +18,9 @@ from coeflab.law.added_mass import AddedMass
 from coeflab.law.coefficient import Coefficient, CoefficientSet, Status
 from coeflab.law.rigid_body import ideal_force
 from coeflab.law.scaling import Conditions, Scaling
-from coeflab.vehicle.assemble import PlannedParameterFile, assemble
+from coeflab.vehicle.assemble import assemble
 from coeflab.vehicle.force_law import force_law
+from coeflab.vehicle.gathered import PlannedParameterFile
 from coeflab.vehicle.parameter_file import ParameterFile
 from tests.report.studies import FULL, small_table
 

@@ -16,7 +16,8 @@ from coeflab.report.document import Document
 from coeflab.report.formats import REPORTERS
 from coeflab.study.study import Plan, Study
 from coeflab.tables.campaign import InputUncertainty
-from coeflab.vehicle.assemble import PlannedParameterFile, assemble
+from coeflab.vehicle.assemble import assemble
+from coeflab.vehicle.gathered import PlannedParameterFile
 from coeflab.vehicle.parameter_parts import ParameterHydrostatics, ParameterSurface
 from tests.report.studies import small_table
 

@@ -27,7 +27,7 @@ from coeflab.bodies.closed_forms.sections import SLENDEREST_RECTANGLE, rectangle
 from coeflab.bodies.mesh import solids
 from coeflab.bodies.mesh.mesh import TriangleMesh
 from coeflab.bodies.mesh.meshing import form_surface
-from coeflab.bodies.panel_solver.influence import panels_of, side_of, slivers, thin_share
+from coeflab.bodies.panel_solver.panels import panels_of, side_of, slivers, thin_share
 from coeflab.bodies.panel_solver.solve import PanelSolution, panel_added_mass
 from coeflab.bodies.shape import (
     Bar,

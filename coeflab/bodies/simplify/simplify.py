@@ -14,10 +14,11 @@ from coeflab.bodies.mesh.meshing import meshed
 from coeflab.bodies.shape import THIN, Faceted, Part, Parts
 from coeflab.bodies.simplify.boxes import NamedBox
 from coeflab.bodies.simplify.convex_pieces import convex_pieces
-from coeflab.bodies.simplify.part_forms import Likeness, Piece, likeness
+from coeflab.bodies.simplify.part_forms import Likeness, likeness
 from coeflab.bodies.simplify.seams import patches
 from coeflab.bodies.simplify.segmentation import segments, without_overlap
 from coeflab.bodies.simplify.simplification import SIMPLIFIED_FACES, Simplification, SimplifiedPart
+from coeflab.bodies.simplify.volume_forms import Piece
 from coeflab.core.errors import InputError, shown
 from coeflab.core.machine import one_thread
 from coeflab.core.provenance import Source

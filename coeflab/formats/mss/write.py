@@ -35,7 +35,7 @@ from coeflab.formats.exported_law import (
 )
 from coeflab.formats.lacking_law import in_header, unstated
 from coeflab.formats.loss import missing_water
-from coeflab.formats.mss.m_file import TABLED, assignments, own_part
+from coeflab.formats.mss.assignments import TABLED, assignments, own_part
 from coeflab.law.force_law import ForceLaw, ForceTerm
 from coeflab.law.scaling import powers_of
 from coeflab.law.symbols import COMPONENTS, CONTROLS, MOTIONS

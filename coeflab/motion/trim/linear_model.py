@@ -21,7 +21,8 @@ from coeflab.core.texts import input_error, text_of
 from coeflab.core.types import Array, dataclass, in_angles
 from coeflab.motion.small_motions import NEUTRAL, STEP, Slopes, modes, participation
 from coeflab.motion.trim.linear_files import ENDINGS, mat, npz
-from coeflab.motion.trim.trim import PLACES, Trim
+from coeflab.motion.trim.steady_motion import PLACES
+from coeflab.motion.trim.trim import Trim
 
 if TYPE_CHECKING:
     import pandas as pd

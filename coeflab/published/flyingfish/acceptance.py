@@ -12,24 +12,14 @@ from coeflab.core.types import Array
 from coeflab.fits import FITS
 from coeflab.law.symbols import COMPONENTS, MOTIONS
 from coeflab.motion.dynamics import from_euler
-from coeflab.motion.marching import idle, integrated_forces
+from coeflab.motion.ensemble import idle, integrated_forces
 from coeflab.motion.trim.operating_point import OperatingPoint
 from coeflab.motion.vehicle import Vehicle, vehicle
 from coeflab.published.flyingfish.figures import figures
-from coeflab.published.flyingfish.model import (
-    CONSTANTS,
-    DEGREE,
-    MEDIA,
-    ROTORS,
-    RPM,
-    UNKNOWNS,
-    FlyingFish,
-    calibrated,
-    read_flyingfish,
-    steady_residuals,
-    trim,
-)
+from coeflab.published.flyingfish.model import CONSTANTS, MEDIA, ROTORS, FlyingFish, calibrated, read_flyingfish
 from coeflab.published.flyingfish.motions import EQUATION_48, EQUATION_50, compared, craft
+from coeflab.published.flyingfish.rotors import steady_residuals
+from coeflab.published.flyingfish.trims import DEGREE, RPM, UNKNOWNS, trim
 from coeflab.published.parameter_files import flyingfish_file
 from coeflab.published.publication import Row, publication
 from coeflab.report.acceptance import Acceptance, ComparedTable

@@ -11,7 +11,7 @@ from coeflab.core.wording import THREE_LINES, grouped
 from coeflab.identify.tuning import Tuning, largest_correlations
 from coeflab.motion import steady_state
 from coeflab.motion import steady_turns as turning
-from coeflab.motion.marching import idle, integrated_forces
+from coeflab.motion.ensemble import idle, integrated_forces
 from coeflab.motion.vehicle import vehicle
 from coeflab.published.huuv import tuning
 from coeflab.published.huuv.figures import paper_figures, tuning_figures

@@ -10,7 +10,8 @@ import numpy as np
 
 from coeflab.core.texts import remark
 from coeflab.core.types import Array
-from coeflab.identify.output_error import Estimate, Problem, estimate, examine, problem
+from coeflab.identify.output_error import Estimate, estimate, examine
+from coeflab.identify.output_problem import Problem, problem
 from coeflab.identify.tuning import (
     TunedQuantity,
     Tuning,

@@ -7,9 +7,9 @@ from typing import Any
 
 from coeflab.core.finding import Finding
 from coeflab.core.wording import finite
-from coeflab.fits.results.fit_result import Pooling
 from coeflab.fits.results.fitted_model import FittedModel
 from coeflab.fits.results.oscillation import Oscillation
+from coeflab.fits.results.pooling import Pooling
 from coeflab.formats.export import Export
 from coeflab.formats.loss import Loss
 from coeflab.law.coefficient import Coefficient

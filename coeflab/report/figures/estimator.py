@@ -17,9 +17,10 @@ from coeflab.fits.results.fit_result import Sweep
 from coeflab.law.symbols import primed
 from coeflab.report.document import Figure, Series
 from coeflab.report.figures import series
+from coeflab.report.figures.artists import strokes
 from coeflab.report.figures.palette import COLOURS, power_of_ten, recoloured
 from coeflab.report.figures.panel import BOTTOM, TOP, drawing, legend, panel
-from coeflab.report.figures.svg import settings, strokes, svg_text
+from coeflab.report.figures.svg import settings, svg_text
 from coeflab.report.notation import as_users_wrote
 from coeflab.report.texts import text_of
 from coeflab.vehicle.published_values import Comparison

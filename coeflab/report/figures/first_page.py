@@ -21,10 +21,11 @@ from coeflab.fits.results.fit_result import Sweep
 from coeflab.law.symbols import primed
 from coeflab.report.acceptance import Acceptance, share
 from coeflab.report.document import AnswerRow, Figure, Series
+from coeflab.report.figures.artists import bare, label, strokes, text_width
 from coeflab.report.figures.palette import COLOURS, power_of_ten
 from coeflab.report.figures.panel import SIZE, Range, framed_legend, limits, tick_texts, ticks
 from coeflab.report.figures.series import curve, numbers, points, tagged
-from coeflab.report.figures.svg import POINTS, bare, label, settings, strokes, svg_text, text_width
+from coeflab.report.figures.svg import POINTS, settings, svg_text
 from coeflab.report.figures.sweep import fine_curve
 from coeflab.report.notation import as_users_wrote
 from coeflab.report.texts import text_of

@@ -9,10 +9,11 @@ import numpy as np
 from coeflab.core.wording import listed
 from coeflab.fits.results.fitted_model import FittedModel
 from coeflab.report.document import Figure
+from coeflab.report.figures.curve import curve_figure
 from coeflab.report.figures.law_along import along, along_figure
 from coeflab.report.figures.residuals import residual_figure
 from coeflab.report.figures.slices import slices_figure, slices_of
-from coeflab.report.figures.surface import curve_figure, is_surface, surface_figure
+from coeflab.report.figures.surface import is_surface, surface_figure
 from coeflab.report.figures.variables import (
     moving,
     symbol_of,

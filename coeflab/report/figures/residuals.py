@@ -12,10 +12,10 @@ from matplotlib.lines import Line2D
 from coeflab.core.types import Array
 from coeflab.fits.results.fitted_model import FittedModel
 from coeflab.report.document import Figure
+from coeflab.report.figures.curve import residual_panel
 from coeflab.report.figures.palette import COLOURS
 from coeflab.report.figures.panel import BOTTOM, drawing, legend, limits, panel
 from coeflab.report.figures.series import numbers, points
-from coeflab.report.figures.surface import residual_panel
 from coeflab.report.figures.svg import settings, svg_text
 from coeflab.report.figures.variables import (
     axis_name,

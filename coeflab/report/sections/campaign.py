@@ -12,7 +12,8 @@ from coeflab.core.provenance import work
 from coeflab.core.table import Table, percent, plus_minus, with_u95
 from coeflab.core.wording import listed
 from coeflab.fits.results.fit_result import FitResult, Sweep
-from coeflab.fits.results.fitted_model import FittedModel, residuals_in_words
+from coeflab.fits.results.fitted_model import FittedModel
+from coeflab.fits.results.lack_of_fit import residuals_in_words
 from coeflab.law.coefficient import Coefficient
 from coeflab.law.symbols import primed
 from coeflab.report.document import Figure, Section

@@ -10,7 +10,7 @@ from scipy import special
 
 from coeflab.core.finding import Severity
 from coeflab.core.table import Check
-from coeflab.fits.rows.sweeps import Secant, explained
+from coeflab.fits.rows.secant import Secant, explained
 from coeflab.law.symbols import primed
 
 if TYPE_CHECKING:
