@@ -85,7 +85,7 @@ def refusal(
     """
     loss = result.loss
     losses = () if loss is None else loss.lost
-    missing = any(x.kind is Kind.MISSING and "added mass" in x.what for x in losses)
+    missing = parameters.added_mass is None and any(x.kind is Kind.MISSING for x in losses)
     return InputError(
         f"{place}a target that loses part of {shown(parameters.name)}: {'' if loss is None else loss_tables.in_short(loss)}", expected,
         advice=advice if missing else "",

@@ -89,7 +89,7 @@ def proposed(path: Path, unit: str = "", axes: str = "") -> Proposal:
     )
     if mesh is not None and not stated:
         body = Body(
-            name=path.stem, title=path.name, datum=Datum(f"origin of {path.name}"), reference_point=np.zeros(3), lengths={},
+            name=path.stem, title=path.name, datum=Datum.of_file(path.name), reference_point=np.zeros(3), lengths={},
             configurations=(computed(shape, ()),), source=Source(path.name), files=(), shape=shape, axes=replace(frame, spelled=False),
         )  # fmt: skip
         contradicted = doubt(body)

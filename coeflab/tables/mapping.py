@@ -485,7 +485,7 @@ def mapped_table(raw: RawTable, campaign: Campaign, table: TableDeclaration) -> 
         for e in out.exclusions
     )
     body = BODY_AXES in raw.stated
-    warned = [text for one in known if not body and (text := unturned(one.column.name, one.meaning))]
+    warned = [f"warning: {text}" for one in known if not body and (text := unturned(one.column.name, one.meaning))]
     words = [*warned, *without_a_setting(raw, known), *raw.remarks]
     more = [f"{len(words) - REMARKS} more remarks; coeflab inspect lists them"] if len(words) > REMARKS else []
     cells = next((one.values[rows] for one in known if one.meaning.name == "cells"), None)
