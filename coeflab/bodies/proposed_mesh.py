@@ -97,7 +97,7 @@ def proposed(path: Path, unit: str = "", axes: str = "") -> Proposal:
             axes = contradicted["better"]
             found.append(contradicted)
     if not stated and mesh is None:
-        axes = _by_extents(shape.extents) or axes
+        axes = ("", "starboard,forward,up", "port,up,forward")[int(np.argmax(shape.extents))] or axes
     turned = np.abs(parse_axes(axes).rotation @ frame.rotation.T) @ shape.extents
     found.append(Finding.of("mesh.axes", path.name, Severity.NOTE, axes=axes, sizes=[float(x) for x in turned]))
     return Proposal(
@@ -121,8 +121,3 @@ def _surface(vertices: Array, faces: Faces, path: Path) -> tuple[SoundMesh | Non
         except InputError as wrong:
             why = wrong.found
     return None, True, why
-
-
-def _by_extents(sizes: Array) -> str:
-    """Of a surface that encloses nothing: its longest extent forward; empty where that is x."""
-    return ("", "starboard,forward,up", "port,up,forward")[int(np.argmax(sizes))]
