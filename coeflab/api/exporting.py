@@ -9,9 +9,10 @@ from coeflab.api.parameters import HasParameters, parameters_of
 from coeflab.core.errors import InputError, shown
 from coeflab.core.files import write_all
 from coeflab.formats import EXPORTERS, loss_tables
-from coeflab.formats.export import Export, Kind
+from coeflab.formats.export import Export
 from coeflab.formats.exporting import export as rendered
 from coeflab.formats.lacking_law import without_law
+from coeflab.formats.missing_parts import Kind
 from coeflab.vehicle.parameter_file import ParameterFile
 
 __all__ = ["Export", "ParameterFile", "export", "loss_tables", "refusal", "require_targets", "without_law"]

@@ -23,9 +23,11 @@ from coeflab.formats import (
     SimulatorExporter,
     SteeredExporter,
 )
-from coeflab.formats.export import Export, Kind, LossItem, Refused, common_losses, loss_of
+from coeflab.formats.export import Export, Refused
 from coeflab.formats.lacking_law import found_in, lacking_tables, without_law
+from coeflab.formats.loss import loss_of
 from coeflab.formats.loss_tables import as_text, in_short
+from coeflab.formats.missing_parts import Kind, LossItem, common_losses
 from coeflab.vehicle.inertia import MEASURED, converted, water_inertia, with_accelerations
 
 if TYPE_CHECKING:

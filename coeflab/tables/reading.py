@@ -29,8 +29,9 @@ from coeflab.tables.transposed import upright
 
 if TYPE_CHECKING:
     from coeflab.core.text.delimited import Cells
-    from coeflab.tables.campaign import Campaign, InputUncertainty, TableDeclaration
+    from coeflab.tables.campaign import Campaign, TableDeclaration
     from coeflab.tables.force_table import ForceTable
+    from coeflab.tables.input_uncertainty import InputUncertainty
     from coeflab.tables.mapping import Assigned
     from coeflab.tables.raw_table import RawTable
 

@@ -13,9 +13,10 @@ import pytest
 from coeflab.core.text.xml import parse_xml
 from coeflab.core.text.yaml import parse_yaml
 from coeflab.formats import EXPORTERS, InertialExporter
-from coeflab.formats.export import LOSSLESS, Export
+from coeflab.formats.export import Export
 from coeflab.formats.exporting import export
 from coeflab.formats.gazebo.law import read_gz_link
+from coeflab.formats.loss import LOSSLESS
 from coeflab.formats.loss_tables import forces, in_short, parts
 from coeflab.formats.uuv_simulator.law import read_fossen_link
 from coeflab.formats.xdyn.law import xdyn_body

@@ -11,9 +11,9 @@ import pytest
 
 from coeflab.core.types import Array
 from coeflab.formats import EXPORTERS, SimulatorExporter, SteeredExporter
-from coeflab.formats import export as of_export
-from coeflab.formats.export import DEFLECTED, rare_states
+from coeflab.formats import loss as of_export
 from coeflab.formats.exporting import export
+from coeflab.formats.loss import DEFLECTED, rare_states
 from coeflab.law.force_law import CONTROLS, ForceLaw
 from coeflab.study.study import Study
 from coeflab.vehicle.force_law import force_law, steered_terms

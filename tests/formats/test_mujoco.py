@@ -13,9 +13,9 @@ import pytest
 from coeflab.bodies.closed_forms import ellipsoid_added_mass
 from coeflab.core.errors import InputError
 from coeflab.core.text.xml import parse_xml
-from coeflab.formats.export import Kind
 from coeflab.formats.exporting import export
 from coeflab.formats.imported_file import Stated, imported_file
+from coeflab.formats.missing_parts import Kind
 from coeflab.formats.mujoco import write as exporter
 from coeflab.law.scaling import Conditions, Scaling, powers_of
 from coeflab.published.huuv.model import parameter_file as huuv_file

@@ -25,8 +25,8 @@ from coeflab.core.files import shipped, write_all
 from coeflab.core.finding import Severity
 from coeflab.core.text.toml import quoted
 from coeflab.estimates import Contribution, Estimates, Water
-from coeflab.formats.export import Loss
 from coeflab.formats.exporting import export, parameter_files_rendered
+from coeflab.formats.loss import Loss
 from coeflab.law.added_mass import AddedMass
 from coeflab.law.coefficient import Coefficient, CoefficientSet, Status
 from coeflab.law.symbols import derivative

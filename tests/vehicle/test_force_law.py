@@ -13,7 +13,7 @@ from coeflab.bodies.triangulation import Triangulation
 from coeflab.core.axes import Datum
 from coeflab.core.provenance import Source
 from coeflab.fits.results.fit_result import FitResult
-from coeflab.formats.export import covered_grid
+from coeflab.formats.loss import covered_grid
 from coeflab.law.added_mass import AddedMass
 from coeflab.law.coefficient import Coefficient, CoefficientSet, Status
 from coeflab.law.rigid_body import ideal_force

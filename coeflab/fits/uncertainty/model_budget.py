@@ -23,8 +23,6 @@ from coeflab.fits.rows.regression import MOMENT_COEFFICIENTS
 from coeflab.fits.uncertainty.budget import (
     COUPLED,
     MODEL,
-    InputPart,
-    acting,
     budget_of,
     grid_study_of,
     undeclared,
@@ -32,12 +30,13 @@ from coeflab.fits.uncertainty.budget import (
     with_budget,
 )
 from coeflab.fits.uncertainty.grid_studies import gravest
+from coeflab.fits.uncertainty.input_parts import InputPart, acting
 from coeflab.fits.uncertainty.propagation import STEP, normal_draws, summary_of
 from coeflab.law.scaling import Scaling
 from coeflab.law.symbols import ANGULAR, COMPONENTS, FORCES, LINEAR, MOMENTS, derivative
 from coeflab.law.transforms import incidence
-from coeflab.tables.campaign import NAMES
 from coeflab.tables.force_table import ForceTable
+from coeflab.tables.input_uncertainty import NAMES
 
 if TYPE_CHECKING:
     from coeflab.core.types import Array
@@ -46,7 +45,7 @@ if TYPE_CHECKING:
     from coeflab.fits.uncertainty.grid_studies import GridStudy, VariantStudy
     from coeflab.fits.uncertainty.propagation import Propagated
     from coeflab.law.coefficient import Coefficient
-    from coeflab.tables.campaign import InputUncertainty
+    from coeflab.tables.input_uncertainty import InputUncertainty
 
 SET_ANGLES = {"alpha": "alpha", "w": "alpha", "beta": "beta", "v": "beta", "dr": "dr", "ds": "ds", "db": "db"}
 

@@ -25,8 +25,8 @@ from coeflab.core.text.json import parse_json
 from coeflab.core.texts import input_error
 from coeflab.core.types import Array, brief
 from coeflab.core.wording import identifier
-from coeflab.formats.export import unheld
 from coeflab.formats.exported_law import held_when_straight, states_buoyancy, straight_coefficients
+from coeflab.formats.loss import unheld
 from coeflab.law.force_law import ForceLaw, ForceTerm
 from coeflab.vehicle.force_law import force_law
 from coeflab.vehicle.inertia import central_inertia, centre_of_gravity

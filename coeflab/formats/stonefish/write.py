@@ -33,9 +33,10 @@ from coeflab.core.text.xml import numbers, parse_xml, serialised
 from coeflab.core.texts import input_error
 from coeflab.core.types import Array, brief
 from coeflab.core.wording import identifier, one_line
-from coeflab.formats.export import covered_grid, missing_mass, unheld
 from coeflab.formats.exported_law import held_when_straight, number
 from coeflab.formats.lacking_law import in_header
+from coeflab.formats.loss import covered_grid, unheld
+from coeflab.formats.missing_parts import missing_mass
 from coeflab.formats.mujoco.law import ellipsoid_of_masses
 from coeflab.law.transforms import force_transfer, moved, velocity_transfer
 from coeflab.vehicle.force_law import force_law

@@ -10,7 +10,8 @@ from coeflab.core.wording import finite
 from coeflab.fits.results.fit_result import Pooling
 from coeflab.fits.results.fitted_model import FittedModel
 from coeflab.fits.results.oscillation import Oscillation
-from coeflab.formats.export import Export, Loss
+from coeflab.formats.export import Export
+from coeflab.formats.loss import Loss
 from coeflab.law.coefficient import Coefficient
 from coeflab.law.symbols import primed
 from coeflab.report.acceptance import Acceptance, Held, held, held_of_study
