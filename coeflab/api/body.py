@@ -256,8 +256,8 @@ class Body(plain.Body):
         """
         if self.datum.id == datum:
             return self
-        if not isinstance(self.shape, TriangleMesh) or not self.datum.id.startswith("origin of ") or datum != NOSE:
-            bare = isinstance(self.shape, TriangleMesh) and self.datum.id.startswith("origin of ")
+        if not isinstance(self.shape, TriangleMesh) or not self.datum.is_of_file or datum != NOSE:
+            bare = isinstance(self.shape, TriangleMesh) and self.datum.is_of_file
             aft = f"{self.shape.length / 2.0:.4g} m" if bare and self.shape and datum in MIDDLE else "X m"
             raise InputError(
                 f"{self.name}, whose places count from {shown(self.datum.id)}",

@@ -12,7 +12,7 @@ from coeflab.formats import EXPORTERS, loss_tables
 from coeflab.formats.export import Export
 from coeflab.formats.export import export as rendered
 from coeflab.formats.lacking_law import without_law
-from coeflab.formats.loss import Kind
+from coeflab.formats.missing_parts import Kind
 from coeflab.vehicle.parameter_file import ParameterFile
 
 __all__ = ["Export", "ParameterFile", "export", "loss_tables", "refusal", "require_targets", "without_law"]
@@ -86,7 +86,7 @@ def refusal(
     """
     loss = result.loss
     losses = () if loss is None else loss.lost
-    missing = any(x.kind is Kind.MISSING and "added mass" in x.what for x in losses)
+    missing = parameters.added_mass is None and any(x.kind is Kind.MISSING for x in losses)
     return InputError(
         f"{place}a target that loses part of {shown(parameters.name)}: {'' if loss is None else loss_tables.in_short(loss)}", expected,
         advice=advice if missing else "",

@@ -471,7 +471,7 @@ def _read(numbers: Mapping[str, str | float]) -> tuple[OwnNumber, ...]:
 def _of_datum(hull: Body, result: Result) -> Body:
     """The body by the datum of the fits, where it is a bare mesh and they count from its nose."""
     datum = next((f.coefficients.datum.id for f in result.fits if f.coefficients.datum != ANYWHERE), hull.datum.id)
-    bare = hull.datum.id.startswith("origin of ") and hull.datum.id != datum
+    bare = hull.datum.is_of_file and hull.datum.id != datum
     return hull.counted_from(datum) if bare else hull
 
 

@@ -165,15 +165,11 @@ def _bow(x: Array) -> tuple[Array, Array]:
     return p ** (1.0 / 1.05), half
 
 
-def _rest(x: Array, square: Polynomial) -> tuple[Array, Array]:
-    return np.clip(square(x), 0.0, None), square.deriv()(x) / 2.0
-
-
 def _piece(x: Array, end: float) -> tuple[Array, Array]:
     if end == BOW_END:
         return _bow(x)
     square = {MIDDLE_END: Polynomial([1.0]), AFTERBODY_END: _AFTERBODY, CAP_END: _CAP}[end]
-    return _rest(x, square)
+    return np.clip(square(x), 0.0, None), square.deriv()(x) / 2.0
 
 
 def suboff_profile(x: Array) -> tuple[Array, Array]:
@@ -184,25 +180,6 @@ def suboff_profile(x: Array) -> tuple[Array, Array]:
         here = np.searchsorted(ends, x).clip(max=3) == k
         square[here], half[here] = _piece(x[here], end)
     return LARGEST_RADIUS * np.sqrt(square), LARGEST_RADIUS**2 * half
-
-
-def suboff_radius(aft: float) -> float:
-    """Radius of the bare hull, m.
-
-    Parameters
-    ----------
-    aft : float
-        Distance aft of the nose, m, from 0 to 4.3561 (14.291667 ft).
-
-    Raises
-    ------
-    InputError
-        Ahead of the nose or aft of the tail.
-    """
-    x = aft / FOOT
-    if not -1e-12 <= x <= CAP_END + 1e-12:
-        raise InputError(f"x = {aft:g} m aft of the nose", f"0 to {CAP_END * FOOT:.4f} m, where the equations hold")
-    return float(FOOT * suboff_profile(np.array([x]))[0][0])
 
 
 def suboff_meridian(nodes: int = NODES) -> Revolution:

@@ -200,7 +200,7 @@ def _first_slopes(folder: Path) -> bool:
             left=frozenset({0}),
         ))  # fmt: skip
         for c in study.checks:  # the one hint at a wrong sign of a moment; a hull with large fins has it too
-            if c.name == "centre_of_pressure" and " behind " in c.statistic:
+            if c.name == "centre_of_pressure" and c.finding is not None and c.finding["way"] == "behind":
                 show.marked(str(c.severity), f"centre of pressure, {c.subject}: {c.statistic}. {c.comment}")
         show.findings(study.checks, most=FINDINGS)
         failed = any(c.severity is Severity.FAIL for c in study.checks)

@@ -210,6 +210,9 @@ SHIPPED = {
 }
 
 
+_ORIGIN = "origin of "
+
+
 @dataclass(frozen=True, slots=True)
 class Datum:
     """A point of the body by its id; two are equal where their ids are, whatever their notes say.
@@ -241,6 +244,16 @@ class Datum:
         text = text.strip()
         known, words = SHIPPED.get(text, (text.casefold() if _ID.fullmatch(text) else text, ""))
         return cls(known, note or words)
+
+    @classmethod
+    def of_file(cls, name: str) -> Datum:
+        """The origin of the axes of a mesh file, of which no file says where on the body it is."""
+        return cls(f"{_ORIGIN}{name}")
+
+    @property
+    def is_of_file(self) -> bool:
+        """Whether it is the origin of a file's axes."""
+        return self.id.startswith(_ORIGIN)
 
     def __str__(self) -> str:
         return f"{self.id}, {self.note}" if self.note else self.id

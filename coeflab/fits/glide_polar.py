@@ -356,7 +356,7 @@ def angle_unit_of(printed: Mapping[str, float], result: FitResult) -> AngleUnit:
     if wrong := [s for s in printed if s not in PRINTABLE]:
         raise InputError(shown(wrong[0]), f"one of {', '.join(PRINTABLE)}", column="glide_polar.printed")
     votes: set[str] = set()
-    statements = []
+    statements, inside = [], 0
     for slope in (s for s in PRINTABLE if s in printed):
         if slope not in SLOPES:
             statements.append(at_no_angle(slope, printed[slope], result))
@@ -373,12 +373,12 @@ def angle_unit_of(printed: Mapping[str, float], result: FitResult) -> AngleUnit:
             continue
         unit = min(fitted, key=lambda u: abs(float(np.log(printed[slope] / fitted[u][0]))))
         value, half = fitted[unit]
-        place = "inside" if abs(printed[slope] - value) <= half else "outside"
+        is_inside = abs(printed[slope] - value) <= half
+        inside += is_inside
         votes.add(unit)
         statements.append(
-            f"{slope}: printed {printed[slope]:g} is per {unit}, {place} the fitted {value:.5g} +- {half:.2g}."
+            f"{slope}: printed {printed[slope]:g} is per {unit}, {'inside' if is_inside else 'outside'} the fitted {value:.5g} +- {half:.2g}."
         )
-    inside = sum("inside the fitted" in text for text in statements)
     if len(votes) == 1:
         return AngleUnit(next(iter(votes)), tuple(statements), inside)
     why = "The slopes disagree about the unit of the angle." if votes else "No slope decides the unit of the angle."

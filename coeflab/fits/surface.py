@@ -1,7 +1,7 @@
 """Tables over two variables: drag, side force, lift and moments over angles of attack and drift.
 
 The additive form C_D(a, b) = C_Da(a) + C_Db(b) - C_D0 is the corrected one: the sum of the two slices that the HUUV
-paper (Talarczyk et al. 2025) prints holds the force at rest twice; `sum_of_slices` shows by how much.
+paper (Talarczyk et al. 2025) prints holds the force at rest twice; a statement of the fit says by how much.
 """
 
 from __future__ import annotations
@@ -15,7 +15,6 @@ import numpy as np
 from coeflab.core.errors import InputError, shown
 from coeflab.core.options import bounded, measured, one_of, parse_options, words
 from coeflab.core.texts import input_error
-from coeflab.core.types import Array
 from coeflab.fits.results.fit_result import FitResult, result_of
 from coeflab.fits.results.fitted_model import FittedModel, in_words
 from coeflab.fits.results.lack_of_fit import residuals_in_words
@@ -165,31 +164,6 @@ def compared(additive: FittedModel | None, full: FittedModel | None, rows: Rows)
         f"Additive against full. {sides}. F = {test.ratio:.3g} on {test.between} and {test.within} degrees of freedom; "
         f"probability of such interaction terms by noise alone: {probability}."
     )
-
-
-def sum_of_slices(model: FittedModel, columns: Mapping[str, Array]) -> tuple[Array, Array]:
-    """What the printed sum C_Da(a) + C_Db(b) would give, and its error against the model.
-
-    Each slice is the model with the other variable at zero, so each holds the value at rest C_D0, and the sum holds it
-    twice: for an additive model the error is C_D0 everywhere, for any model it is C_D0 at the origin.
-
-    Parameters
-    ----------
-    model : FittedModel
-        In two variables.
-    columns : mapping of variable to (n,) array
-
-    Returns
-    -------
-    printed, error : (n,) array
-        The sum of the slices, and the sum less the model.
-    """
-    slices = [
-        model.evaluate({v: x if v == selected else np.zeros_like(x) for v, x in columns.items()})[0]
-        for selected in model.domain.variables
-    ]
-    printed = np.asarray(sum(slices), dtype=np.float64)
-    return printed, np.asarray(printed - model.evaluate(columns)[0], dtype=np.float64)
 
 
 def _slices_in_words(model: FittedModel) -> tuple[str, ...]:

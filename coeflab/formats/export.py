@@ -27,8 +27,9 @@ from coeflab.formats import (
     SteeredExporter,
 )
 from coeflab.formats.lacking_law import found_in, lacking_tables, without_law
-from coeflab.formats.loss import Kind, Loss, LossItem, common_losses, loss_of
+from coeflab.formats.loss import Loss, loss_of
 from coeflab.formats.loss_tables import as_text, in_short
+from coeflab.formats.missing_parts import Kind, LossItem, common_losses
 from coeflab.vehicle.inertia import MEASURED, converted, water_inertia, with_accelerations
 
 if TYPE_CHECKING:

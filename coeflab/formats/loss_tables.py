@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING
 
 from coeflab.core.table import ABSENT, Table, coefficient, number
 from coeflab.core.texts import remark
-from coeflab.formats.loss import LOSSLESS, RARE, Kind
+from coeflab.formats.loss import LOSSLESS
+from coeflab.formats.missing_parts import Kind
 from coeflab.law.added_mass import potential_part
 from coeflab.law.symbols import COMPONENTS, MOTIONS
 from coeflab.vehicle.force_law import points_of
@@ -19,6 +20,8 @@ if TYPE_CHECKING:
     from coeflab.formats.loss import Apart, Loss
     from coeflab.vehicle.inertia import WaterInertia
     from coeflab.vehicle.law_at_points import LawAtPoints
+
+RARE = "astern, broadside and at rest"
 
 NAMED = 3
 MOST_APART = 1000.0  # per cent of a force; a larger difference is not told from this one

@@ -72,23 +72,15 @@ def candidate_terms(
         out += [_named(_written(c, t, parameters), parameters) for t in result]
         if accelerations and c in driven:
             free = [m for m in MOTIONS if m in moving]
-            dots = [m for m in free if not symmetric or allowed(c, _one(m))]
+            dots = [m for m in free if not symmetric or allowed(c, Term(((m, 1, False),)))]
             out += [_named(f"{c}{m}dot", parameters) for m in dots]
     return out
-
-
-def _one(motion: str) -> Term:
-    return Term(((motion, 1, False),))
-
-
-def _accelerates(symbol: str) -> bool:
-    return any(f.endswith("dot") for f in derivative(symbol).factors)
 
 
 def _written(component: str, term: Term, parameters: ParameterFile) -> str:
     """The symbol of a term as the file spells it, where it has it."""
     for c in parameters.coefficients:
-        if c.symbol[0] == component and not _accelerates(c.symbol):
+        if c.symbol[0] == component and not any(f.endswith("dot") for f in derivative(c.symbol).factors):
             text = derivative(c.symbol).text
             if same(parse_suffix(text[1:]), term):
                 return text

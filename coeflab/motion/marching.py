@@ -19,17 +19,8 @@ from coeflab.motion.ensemble import STILL, Ensemble, alone
 from coeflab.motion.integrators import fixed_step as plain
 from coeflab.motion.integrators.adaptive import march_adaptive
 from coeflab.motion.integrators.fixed_step import fast_eigenvalues, largest_step
-from coeflab.motion.manoeuvre import (
-    NEAR,
-    Late,
-    Manoeuvre,
-    Marching,
-    Orders,
-    beyond_curves,
-    orders_of,
-    ramp,
-    standing_orders,
-)
+from coeflab.motion.manoeuvre import Manoeuvre
+from coeflab.motion.orders import NEAR, Late, Marching, Orders, beyond_curves, orders_of, ramp, standing_orders
 from coeflab.motion.trajectory import Ended, Trajectory, ended_by_tables, outside
 from coeflab.motion.vehicle import Vehicle
 

@@ -39,7 +39,7 @@ from coeflab.study.lines import NAME, line
 from coeflab.study.study import Study
 from coeflab.study.towed import Towed, towed
 from coeflab.vehicle.published_values import Comparison, Reference, Relation
-from coeflab.vehicle.stability import ALONE, FAST, INDICES, Derived, missing_for_stability, sense, stability
+from coeflab.vehicle.stability import FAST, INDICES, Derived, Verdict, missing_for_stability, stability, verdict
 
 ROLL = "K"  # moments of which no hull has a sign: a headline says what is open of one that is asked for, or alone
 PLACES = 4  # of a line, which has no U95 to say how many count
@@ -341,12 +341,12 @@ def _stability(study: Study) -> tuple[Chip, ...]:
 
 
 def _of_plane(study: Study, d: Derived) -> Chip:
-    words = sense(d).removesuffix(ALONE).partition(f" {FAST}")[0]
+    says = verdict(d)
     grave = (
         Severity.PASS
-        if words == "stable" and d.result is not None
+        if says is Verdict.STABLE and d.result is not None
         else Severity.WARN
-        if words.startswith("unstable")
+        if says is Verdict.UNSTABLE
         else Severity.NOTE
     )
     value = f"{d.value:.2f}, no U95" if d.result is None else d.in_words
@@ -356,7 +356,7 @@ def _of_plane(study: Study, d: Derived) -> Chip:
     published = f" ({', '.join(stated)} published)" if 0 < len(stated) < len(INDICES[d.name]) - 1 else ""
     several = len(study.parameter_files) > 1
     name = f"{_of_study_named(study, d.subject)}, {plane}{fast}" if several else f"Stability, {plane} plane{fast}"
-    return Chip(name, f"{words}, {d.name} = {value}{published}", grave, "stability")
+    return Chip(name, f"{says}, {d.name} = {value}{published}", grave, "stability")
 
 
 def _of_study_named(study: Study, name: str) -> str:

@@ -218,25 +218,6 @@ def _rounded(step: float) -> float:
     return float(np.floor(step / unit + EXACT) * unit)
 
 
-def default_matrix(body: TowedBody | None, speed: float, length: float | None = None) -> tuple[TowCondition, ...]:
-    """The conditions that the six derivatives need.
-
-    Parameters
-    ----------
-    body : TowedBody or None
-        Its mirrors say which side and which half are run; None has no symmetry.
-    speed : float
-        m/s.
-    length : float, optional
-        Of the primes, m; the body's unless given.
-    """
-    if length is None:
-        if body is None:
-            raise InputError("neither a body nor a length", "one of them", column="scaling.length")
-        length = body.length
-    return conditions(default_sweeps(body, length), body, speed, length)
-
-
 def conditions(sweeps: Sweeps, body: TowedBody | None, speed: float, length: float) -> tuple[TowCondition, ...]:
     """The conditions of sweeps, a straight run first in every domain that a sweep has.
 

@@ -116,7 +116,6 @@ class Sources:
         Coefficients.
     tables : tuple of TableSource
     unused_terms : tuple of ForceTerm
-    unused_tables : tuple of TableSource
     findings : tuple of Finding
         What is not used, and why.
     """
@@ -124,7 +123,6 @@ class Sources:
     terms: tuple[ForceTerm, ...]
     tables: tuple[TableSource, ...]
     unused_terms: tuple[ForceTerm, ...]
-    unused_tables: tuple[TableSource, ...]
     findings: tuple[Finding, ...]
 
     def open_products(self) -> NDArray[np.bool_]:
@@ -191,9 +189,8 @@ def summed(
         found.append(_unused_terms(rivals, s))
     if version != OF_SUM and tuple(map(int, version.split("."))) < tuple(map(int, OF_SUM.split("."))):
         found += _by_the_older_rule(terms, every, selected, standing, version)
-    out = tuple(s for s in every if s not in standing)
     acting = _of_wind(standing, [(t.component, moved_by(t.variables)) for t in selected], found)
-    return Sources(tuple(selected), acting, tuple(dropped), out, tuple(found))
+    return Sources(tuple(selected), acting, tuple(dropped), tuple(found))
 
 
 def still_known(models: Sequence[ParameterModel], terms: Sequence[tuple[str, str, Moved]]) -> Sources:
@@ -218,8 +215,7 @@ def still_known(models: Sequence[ParameterModel], terms: Sequence[tuple[str, str
         if rivals:
             standing.remove(s)
             found.append(_unused_table(s, list(map(primed, rivals))))
-    out = tuple(s for s in every if s not in standing)
-    return Sources((), _of_wind(standing, [(c, moved) for _, c, moved in terms], found), (), out, tuple(found))
+    return Sources((), _of_wind(standing, [(c, moved) for _, c, moved in terms], found), (), tuple(found))
 
 
 def _among_tables(every: Sequence[TableSource], found: list[Finding]) -> list[TableSource]:

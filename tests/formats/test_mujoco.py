@@ -14,7 +14,7 @@ from coeflab.bodies.closed_forms.ellipsoid import ellipsoid_added_mass
 from coeflab.core.errors import InputError
 from coeflab.core.text.xml import parse_xml
 from coeflab.formats.export import export
-from coeflab.formats.loss import Kind
+from coeflab.formats.missing_parts import Kind
 from coeflab.formats.mujoco import write as exporter
 from coeflab.formats.stated_file import Stated, stated_file
 from coeflab.law.scaling import Conditions, Scaling, powers_of

@@ -183,7 +183,7 @@ NO_PRIMES = {
     "estimates/ring_wing.py": (1, "dynamic pressure on a ring wing's area"),
     "vehicle/sizes.py": (2, "half rho s^2, s the cube root of the displaced volume: sizes judged without a length"),
     "vehicle/force_law.py": (1, "dynamic pressure on the reference area of a fitted table"),
-    "fits/uncertainty/budget.py": (1, "relative errors of density, speed and length: factors near one"),
+    "fits/uncertainty/input_parts.py": (1, "relative errors of density, speed and length: factors near one"),
     "formats/mss/m_file.py": (
         1,
         "recognises r2 = rho L^2 / 2 of a foreign file in the units of that file, slug and foot too",

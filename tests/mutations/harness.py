@@ -225,9 +225,10 @@ def validate_flyingfish(fish: FlyingFish, file: ParameterFile | None = None) -> 
     """All but searches for trims and the bench."""
     constants = calibrated(fish.rotors, fish.motion, fish.angles, fish.speeds)
     made = flyingfish_file(fish) if file is None else file
+    c = motions.craft(fish, 0)
     tables = (
         *flyingfish.implied(fish, constants), *flyingfish.carried(fish, made), flyingfish.air(fish),
-        *motions.without_trims(fish),
+        motions.equations(c, "water"), motions.equations(c, "air"), motions.third(fish), motions.surface(c),
     )  # fmt: skip
     return of_tables(tables, plausibility(made))
 

@@ -14,7 +14,7 @@ from coeflab.report.sections.coefficients import coefficients_section
 from coeflab.report.tables import budgets as budget_tables
 from coeflab.report.tables import results
 from coeflab.study.validation import validation
-from coeflab.tables.campaign import InputUncertainty
+from coeflab.tables.input_uncertainty import InputUncertainty
 from coeflab.vehicle.stability import centre_of_pressure
 from tests.report.studies import FULL, HOSTILE, budgets, small_study
 

@@ -151,10 +151,6 @@ def _text(path: Path) -> bytes:
     return whole_bytes(path, LARGEST_TEXT)
 
 
-def _is_text(head: bytes) -> bool:
-    return bool(head) and head.isascii() and all(c >= 32 or c in b"\t\r\n\f" for c in head)
-
-
 def stl_faces(path: Path) -> int:
     """Triangles of an STL, binary or text."""
     size = path.stat().st_size
@@ -164,7 +160,7 @@ def stl_faces(path: Path) -> int:
     if len(head) >= 84 and size == 84 + 50 * claimed:
         return claimed
     if not (head.lstrip()[:5].lower() == b"solid" and b"facet" in head.lower()):
-        if _is_text(head):
+        if bool(head) and head.isascii() and all(c >= 32 or c in b"\t\r\n\f" for c in head):
             raise InputError(
                 f"a text file that begins {shown(head.decode('ascii')[:40].strip())}",
                 "an STL: binary, or text that begins with solid and holds facets",

@@ -155,7 +155,7 @@ def gradients(targets: Array, directions: Array, panels: Panels) -> tuple[NDArra
     velocity, slope, layer = np.empty((m, n), dtype=np.float32), np.empty((m, 3)), np.empty((m, 3))
     corners, third = panels.corners, (panels.area / 3.0).astype(np.float32)
     middles = (corners + np.roll(corners, -1, axis=1)).transpose(1, 2, 0) / 2.0
-    squares = [_squares(y) for y in (*middles, panels.centre.T)]
+    squares = [np.vstack([-2.0 * y, np.ones(y.shape[1]), np.sum(y**2, axis=0)]) for y in (*middles, panels.centre.T)]
     ahead = [np.vstack([y, np.full(n, -1.0)]).astype(np.float32) for y in middles]
     height = np.vstack([-panels.normal.T, np.sum(panels.normal * panels.centre, axis=1)]).astype(np.float32)
     normal, reach = panels.normal.astype(np.float32), (REACH * panels.size) ** 2
@@ -191,11 +191,6 @@ def gradients(targets: Array, directions: Array, panels: Panels) -> tuple[NDArra
         here = slice(start, start + step)
         velocity[here], slope[here], layer[here] = push, pull @ normal, inverse @ normal
     return velocity, slope, layer
-
-
-def _squares(points: Array) -> Array:
-    """(5, n): squares of distances to points, (3, n), as a polynomial of the target (x, x x, 1)."""
-    return np.vstack([-2.0 * points, np.ones(points.shape[1]), np.sum(points**2, axis=0)])
 
 
 def _ring(targets: Array, corners: Array) -> Array:

@@ -140,10 +140,6 @@ def _half(q: Array) -> Array:
     return 0.2969 * np.sqrt(q) - 0.126 * q - 0.3516 * q**2 + 0.2852 * q**3 - 0.1045 * q**4
 
 
-def _half_slope(q: Array) -> Array:
-    return 0.14845 / np.sqrt(q) - 0.126 - 0.7032 * q + 0.8556 * q**2 - 0.418 * q**3
-
-
 def _chord(y: Array) -> Array:
     return TAPER * y + AXIS_CHORD
 
@@ -167,7 +163,7 @@ def plane(hull: Hull) -> Appendage:
     """
     q, q_weight = graded_nodes(0.0, 1.0, APPENDAGE_NODES, APPENDAGE_GRADING)
     share, share_weight = graded_nodes(0.0, 1.0, APPENDAGE_NODES)
-    half, slope = _half(q), _half_slope(q)
+    half, slope = _half(q), (0.14845 / np.sqrt(q) - 0.126 - 0.7032 * q + 0.8556 * q**2 - 0.418 * q**3)
     tip, foot = _chord(np.array(TIP)), _chord(_foot(hull, q[:, None], share))
     second = (tip**3 - foot**3) / (3.0 * TAPER) @ share_weight
     third = (tip**4 - foot**4) / (4.0 * TAPER) @ share_weight

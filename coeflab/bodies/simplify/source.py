@@ -82,7 +82,7 @@ def subject(
     """
     body = mesh_body(name, unit, axes, repair, fill, sheets)
     middle = body.configurations[0].centre_of_buoyancy
-    bare = body.datum.id.startswith("origin of ") and not body.lengths
+    bare = body.datum.is_of_file and not body.lengths
     if not bare or middle is None:
         return body
     size = body.require_shape().length
@@ -152,7 +152,7 @@ def _bare(path: Path, unit: float, axes: Axes, repair: bool, fill: bool, sheets:
     return Body(
         name=path.stem,
         title=path.name,
-        datum=Datum(f"origin of {path.name}"),
+        datum=Datum.of_file(path.name),
         reference_point=np.zeros(3),
         lengths={},
         configurations=(computed(shape, found.statements),),

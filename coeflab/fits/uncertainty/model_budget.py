@@ -13,8 +13,6 @@ from coeflab.fits.rows.regression import MOMENT_COEFFICIENTS
 from coeflab.fits.uncertainty.budget import (
     COUPLED,
     MODEL,
-    InputPart,
-    acting,
     budget_of,
     grid_study_of,
     undeclared,
@@ -22,6 +20,7 @@ from coeflab.fits.uncertainty.budget import (
     with_budget,
 )
 from coeflab.fits.uncertainty.grid_studies import gravest
+from coeflab.fits.uncertainty.input_parts import InputPart, acting
 from coeflab.fits.uncertainty.model_effects import ModelEffects, Refit, model_effects
 from coeflab.fits.uncertainty.moved_tables import SET_ANGLES
 from coeflab.law.scaling import Scaling

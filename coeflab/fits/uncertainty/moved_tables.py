@@ -16,12 +16,12 @@ from coeflab.core.types import dataclass
 from coeflab.law.scaling import Scaling
 from coeflab.law.symbols import ANGULAR, FORCES, LINEAR, MOMENTS
 from coeflab.law.transforms import incidence
-from coeflab.tables.campaign import NAMES
 from coeflab.tables.force_table import ForceTable
+from coeflab.tables.input_uncertainty import NAMES
 
 if TYPE_CHECKING:
     from coeflab.core.types import Array
-    from coeflab.tables.campaign import InputUncertainty
+    from coeflab.tables.input_uncertainty import InputUncertainty
 
 
 SET_ANGLES = {"alpha": "alpha", "w": "alpha", "beta": "beta", "v": "beta", "dr": "dr", "ds": "ds", "db": "db"}

@@ -20,7 +20,8 @@ from coeflab.formats.gazebo.assembly import LINK
 from coeflab.formats.gazebo.drive import drive, driven_force, fin_symbols, in_words, not_driven
 from coeflab.formats.gazebo.law import DENSITY, FLUID_TAGS, FORCES, LENGTH, RESISTANCE, SYSTEM, VELOCITIES, read_gz_link
 from coeflab.formats.lacking_law import in_header
-from coeflab.formats.loss import missing_mass, missing_water, unheld
+from coeflab.formats.loss import unheld
+from coeflab.formats.missing_parts import missing_mass, missing_water
 from coeflab.law.symbols import CONTROLS
 from coeflab.vehicle.inertia import central_inertia, water_inertia
 from coeflab.vehicle.parameter_file import ParameterFile

@@ -34,7 +34,7 @@ from coeflab.formats.exported_law import (
     written_terms,
 )
 from coeflab.formats.lacking_law import in_header, unstated
-from coeflab.formats.loss import missing_water
+from coeflab.formats.missing_parts import missing_water
 from coeflab.formats.mss.assignments import TABLED, assignments, own_part
 from coeflab.law.force_law import ForceLaw, ForceTerm
 from coeflab.law.scaling import powers_of

@@ -23,7 +23,8 @@ from coeflab.core.types import Array
 from coeflab.core.wording import identifier, one_line
 from coeflab.formats.exported_law import held_when_straight, number, states_buoyancy, straight_coefficients
 from coeflab.formats.lacking_law import in_header
-from coeflab.formats.loss import missing_mass, unheld
+from coeflab.formats.loss import unheld
+from coeflab.formats.missing_parts import missing_mass
 from coeflab.formats.mujoco.law import FluidEllipsoid, ellipsoid_of_masses
 from coeflab.law.force_law import ForceLaw
 from coeflab.law.symbols import COMPONENTS, MOTIONS

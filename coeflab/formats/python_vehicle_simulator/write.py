@@ -32,7 +32,7 @@ from coeflab.formats.exported_law import (
     written_terms,
 )
 from coeflab.formats.lacking_law import in_header
-from coeflab.formats.loss import missing_mass, missing_water
+from coeflab.formats.missing_parts import missing_mass, missing_water
 from coeflab.law.force_law import ForceLaw, ForceTerm
 from coeflab.law.scaling import powers_of
 from coeflab.law.symbols import COMPONENTS, CONTROLS, MOTIONS

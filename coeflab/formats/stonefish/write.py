@@ -18,7 +18,8 @@ from coeflab.core.types import Array
 from coeflab.core.wording import identifier, one_line
 from coeflab.formats.exported_law import held_when_straight, number
 from coeflab.formats.lacking_law import in_header
-from coeflab.formats.loss import missing_mass, unheld
+from coeflab.formats.loss import unheld
+from coeflab.formats.missing_parts import missing_mass
 from coeflab.formats.mujoco.law import ellipsoid_of_masses
 from coeflab.formats.stonefish.drags import ChosenDrags, StonefishLink, chosen_drags
 from coeflab.formats.stonefish.law import added, ellipsoid_mesh

@@ -31,7 +31,7 @@ from coeflab.formats.exported_law import (
     written_terms,
 )
 from coeflab.formats.lacking_law import in_header
-from coeflab.formats.loss import missing_water
+from coeflab.formats.missing_parts import missing_water
 from coeflab.formats.xdyn.actuators import command_names, held_lines, limited, thrust_lines
 from coeflab.formats.xdyn.expressions import settled
 from coeflab.formats.xdyn.law import ADDED, BUOYANCY, DAMPING, FUNCTIONS, HERE, RIGID, THRUST, XdynBody, xdyn_body

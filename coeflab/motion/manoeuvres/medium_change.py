@@ -13,7 +13,8 @@ from coeflab.core.errors import InputError
 from coeflab.core.options import bounded, measured, one_of, orders, parse_options, text
 from coeflab.motion.approach import judged, thruster_orders
 from coeflab.motion.dynamics import from_euler, rotations
-from coeflab.motion.manoeuvre import Figure, Manoeuvre, Phase, Until, extreme
+from coeflab.motion.manoeuvre import Figure, Manoeuvre, Phase, Until
+from coeflab.motion.readings import extreme
 from coeflab.motion.trajectory import Trajectory
 from coeflab.motion.vehicle import Vehicle
 from coeflab.motion.vehicle import vehicle as vehicle_of

@@ -151,12 +151,8 @@ def _constants(fish: FlyingFish, constants: Array) -> ComparedTable:
     return PAPER.table("constants", rows)
 
 
-def _left(fish: FlyingFish, constants: Array) -> Array:
-    return steady_residuals(fish.rotors, constants, fish.motion, fish.angles, fish.speeds)
-
-
 def _residuals(fish: FlyingFish, constants: Array) -> ComparedTable:
-    left = _left(fish, constants)
+    left = steady_residuals(fish.rotors, constants, fish.motion, fish.angles, fish.speeds)
     rows = tuple(
         Row(f"motion {row + 1}", name, "N" if k < 3 else "N m", 0.0, float(left[row, k]), FORCES if k < 3 else MOMENTS)
         for row in range(len(left))

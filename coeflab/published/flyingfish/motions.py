@@ -93,12 +93,6 @@ def craft(fish: model.FlyingFish, rows: int | None = None) -> Craft:
     return Craft(fish, constants, water, air, np.array([by_equations(row) for row in range(count)]).reshape(-1, 8))
 
 
-def without_trims(fish: model.FlyingFish) -> tuple[ComparedTable, ...]:
-    """The tables that take a fraction of a second."""
-    c = craft(fish, 0)
-    return equations(c, "water"), equations(c, "air"), third(fish), surface(c)
-
-
 def compared(c: Craft) -> tuple[ComparedTable, ...]:
     """Every table of this file."""
     return (

@@ -81,7 +81,7 @@ def turned(huuv: Huuv, file: ParameterFile) -> tuple[ComparedTable, ...]:
     """What needs neither a motion in time nor a fit to Fig. 17."""
     return (
         _solved(huuv),
-        _through_file(huuv, file),
+        PAPER.table("through_file", _rows(huuv, _by_file(huuv, file)[:, [0, 1, 5]])),
         _sides(huuv, file),
         _coriolis(huuv, file),
         _equations(huuv),
@@ -134,10 +134,6 @@ def _by_file(huuv: Huuv, file: ParameterFile) -> Array:
     result, turns = vehicle(file, free=("u", "v", "r")), huuv.accepted
     commands = [{"left": float(a), "right": float(b)} for a, b in zip(turns.left, turns.right, strict=True)]
     return steady_state.steady_motions(result, steady_state.wrenches(result, commands))[0]
-
-
-def _through_file(huuv: Huuv, file: ParameterFile) -> ComparedTable:
-    return PAPER.table("through_file", _rows(huuv, _by_file(huuv, file)[:, [0, 1, 5]]))
 
 
 def _sides(huuv: Huuv, file: ParameterFile) -> ComparedTable:

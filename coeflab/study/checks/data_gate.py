@@ -68,10 +68,6 @@ def _copies(table: ForceTable) -> NDArray[np.bool_]:
     return again & measured
 
 
-def _about_own(table: ForceTable) -> ForceTable:
-    return table if table.measured_about is None else table.about(table.measured_about)
-
-
 @dataclass(slots=True)
 class _Cell:
     """One reading as its best sweep sees it."""
@@ -424,7 +420,7 @@ def findings(tables: Sequence[ForceTable], length: float) -> tuple[Check, ...]:
     length : float
         Of the primes in which derivatives are given, m.
     """
-    own = [_about_own(t) for t in tables]
+    own = [(t if t.measured_about is None else t.about(t.measured_about)) for t in tables]
     shift = arm_shift(tables)
     turned = [t.about(t.reference_point + np.array([shift, 0.0, 0.0])) for t in tables]
     readings = max(sum(int(mask.sum()) for t in own for mask in t.usable.values()), 1)
