@@ -203,6 +203,7 @@ def simulate(
     step, record : float, optional
         Of rk4, and between rows, s.
     integrator : {"adaptive", "rk4"}, optional
+        Adaptive unless given.
     simulator : str
         Name from ``cf.plugins("simulators")``; draws need rigid_body.
     tables : bool
@@ -237,11 +238,11 @@ def simulate(
     found = carried_out(
         parameters,
         manoeuvre,
-        options,
-        how,
-        free,
-        hold,
-        simulator,
+        options=options,
+        integration=how,
+        free=free,
+        hold=hold,
+        simulator=simulator,
         tables=tables,
         accelerations=accelerations,
     )

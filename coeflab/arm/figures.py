@@ -29,7 +29,7 @@ from coeflab.core.types import Array, brief, locking
 from coeflab.motion.dynamics import rotations
 from coeflab.motion.trajectory import Trajectory
 from coeflab.report.document import Figure
-from coeflab.report.figures import body_scene, form_facets
+from coeflab.report.figures import form_facets, part_pictures
 from coeflab.report.figures.artists import text_width
 from coeflab.report.figures.body import OBLIQUE
 from coeflab.report.figures.body_view import Sheet, View, outline_path
@@ -145,7 +145,7 @@ def _in_place(drawn: Sheet, shape: Parts) -> None:
     """The hull, and of every cylinder what neither lies in it nor behind it; cylinders nearer to the viewer later."""
     hull, *cylinders = shape.parts
     toward = drawn.view.axes[2]
-    drawn.part(body_scene.part_facets(hull), body_scene.COLOUR_OF["ellipsoid"], False, True)
+    drawn.part(part_pictures.part_facets(hull), part_pictures.COLOUR_OF["ellipsoid"], False, True)
     for part in sorted(cylinders, key=lambda p: round(float(p.centre @ toward), 9)):
         form = part.form
         if not isinstance(form, Cylinder):
@@ -153,7 +153,7 @@ def _in_place(drawn: Sheet, shape: Parts) -> None:
         facets = form_facets.cut_cylinder_facets(form.radius, form.length, SLICES) @ part.rotation.T + part.centre
         seen = facets[in_sight(facets.mean(axis=1), hull, toward)]
         if len(seen):
-            drawn.part(seen, body_scene.COLOUR_OF["cylinder"], False, False)
+            drawn.part(seen, part_pictures.COLOUR_OF["cylinder"], False, False)
 
 
 def in_sight(points: Array, hull: Part, toward: Array) -> NDArray[np.bool_]:
@@ -271,7 +271,7 @@ def _pale(drawn: Sheet, shape: Parts) -> None:
     """Parts as outlines with a pale fill, so that what is written over them can be read."""
     for part in shape.parts:
         path = outline_path(
-            silhouettes.convex_outline(body_scene.part_facets(part).reshape(-1, 3), drawn.frame), drawn.move
+            silhouettes.convex_outline(part_pictures.part_facets(part).reshape(-1, 3), drawn.frame), drawn.move
         )
         if path is not None:
             drawn.axes.add_patch(PathPatch(path, facecolor=COLOURS["band"], edgecolor="none", alpha=0.25, zorder=2))

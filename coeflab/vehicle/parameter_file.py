@@ -289,6 +289,7 @@ def schema() -> bytes:
     content: dict[str, Any] = ParameterFile.model_json_schema()
     content["$schema"] = "https://json-schema.org/draft/2020-12/schema"
     content["$id"] = f"coeflab-parameter-file-{SCHEMA_VERSION}"
+    content["$comment"] = "generated: coeflab schema parameters"
     return (json.dumps(content, indent=2) + "\n").encode()
 
 

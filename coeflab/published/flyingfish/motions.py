@@ -23,7 +23,7 @@ from coeflab.motion.trim.trim import trim as trimmed
 from coeflab.motion.vehicle import Vehicle, vehicle
 from coeflab.published.flyingfish import model
 from coeflab.published.flyingfish.equations import aerial_wrench, body_rates, damping, dash, earth_rates, rise, turned
-from coeflab.published.flyingfish.rotors import rotor_wrench
+from coeflab.published.flyingfish.rotors import rotor_wrench, steady_residuals
 from coeflab.published.flyingfish.trims import EQUATIONS, UNKNOWNS, unknowns_of
 from coeflab.published.parameter_files import flyingfish_file
 from coeflab.published.publication import Row, publication
@@ -85,7 +85,7 @@ def craft(fish: model.FlyingFish, rows: int | None = None) -> Craft:
         motion = fish.motion[row : row + 1]
 
         def left(x: Array) -> Array:
-            return model.steady_residuals(fish.rotors, constants, motion, x[None, :4], x[None, 4:], -1.0).ravel()
+            return steady_residuals(fish.rotors, constants, motion, x[None, :4], x[None, 4:], -1.0).ravel()
 
         return _nearest(fish, row, left)
 
@@ -213,7 +213,7 @@ def third(fish: model.FlyingFish) -> ComparedTable:
 
     def left(velocity: Array) -> Array:
         motion = np.array([[velocity[0], velocity[1], 0.0, 0.0, pitch]])
-        return model.steady_residuals(fish.rotors, constants, motion, angles, speeds)[0, [0, 2]]
+        return steady_residuals(fish.rotors, constants, motion, angles, speeds)[0, [0, 2]]
 
     from scipy.optimize import fsolve
 

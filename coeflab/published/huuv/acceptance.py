@@ -10,7 +10,7 @@ from coeflab.core.types import Array
 from coeflab.core.wording import THREE_LINES, grouped
 from coeflab.identify.tuning import Tuning, largest_correlations
 from coeflab.motion import steady_state
-from coeflab.motion import steady_turns as turning
+from coeflab.motion import steady_turns as planar_turns
 from coeflab.motion.ensemble import idle, integrated_forces
 from coeflab.motion.vehicle import vehicle
 from coeflab.published.huuv import tuning
@@ -103,7 +103,7 @@ def _rows(huuv: Huuv, found: Array) -> list[Row]:
     """Operating points beside velocities u v r."""
     turns, ours = (
         huuv.accepted,
-        turning.SteadyTurns(found, np.ones(len(found), bool), np.ones(len(found), bool)),
+        planar_turns.SteadyTurns(found, np.ones(len(found), bool), np.ones(len(found), bool)),
     )
     printed = np.column_stack([turns.figures * (1.0, np.degrees(1.0), 1.0), huuv.accepted_rate])
     computed = np.column_stack([found[:, 0], np.degrees(np.abs(ours.drift)), ours.radius, np.abs(found[:, 2])])
@@ -117,7 +117,7 @@ def _rows(huuv: Huuv, found: Array) -> list[Row]:
 
 
 def _solved(huuv: Huuv) -> ComparedTable:
-    found = turning.steady_turns(huuv.theta, _wrench(huuv, huuv.accepted))
+    found = planar_turns.steady_turns(huuv.theta, _wrench(huuv, huuv.accepted))
     stable = "all are stable" if np.all(found.stable) else "some are not stable"
     return PAPER.table("steady_turns", _rows(huuv, found.velocity), stable=stable)
 
@@ -125,7 +125,7 @@ def _solved(huuv: Huuv) -> ComparedTable:
 def simulated_rows(huuv: Huuv) -> ComparedTable:
     """The steady turns after two minutes from rest."""
     times = np.array([0.0, LASTS])
-    ends = np.array([turning.run(huuv.theta, one, times)[-1] for one in _wrench(huuv, huuv.accepted)])
+    ends = np.array([planar_turns.run(huuv.theta, one, times)[-1] for one in _wrench(huuv, huuv.accepted)])
     return PAPER.table("simulated", _rows(huuv, ends), lasts=LASTS)
 
 
@@ -139,7 +139,7 @@ def _by_file(huuv: Huuv, file: ParameterFile) -> Array:
 def _sides(huuv: Huuv, file: ParameterFile) -> ComparedTable:
     """Sizes alone would not notice a turn to the other side."""
     turning = huuv.accepted.right > huuv.accepted.left
-    solved = turning.steady_turns(huuv.theta, _wrench(huuv, huuv.accepted)).velocity
+    solved = planar_turns.steady_turns(huuv.theta, _wrench(huuv, huuv.accepted)).velocity
     rows = tuple(
         Row(where, "turns to port, v to starboard", "1", float(np.sum(turning)), float(np.sum(turning & (v > 0.0) & (r < 0.0))))
         for where, (v, r) in (("equations", solved[:, 1:].T), ("parameter file", _by_file(huuv, file)[:, [1, 5]].T))
@@ -150,12 +150,12 @@ def _sides(huuv: Huuv, file: ParameterFile) -> ComparedTable:
 def _coriolis(huuv: Huuv, file: ParameterFile) -> ComparedTable:
     """The products of velocities in the forces that are integrated, of the equations and of the parameter file."""
     velocity = np.random.default_rng(SEED).normal(size=(MOTIONS, 3))
-    inertial = turning.features(velocity)[0][:, :, turning.INERTIAL] @ huuv.theta[turning.INERTIAL]
+    inertial = planar_turns.features(velocity)[0][:, :, planar_turns.INERTIAL] @ huuv.theta[planar_turns.INERTIAL]
     moved = idle(vehicle(file, free=("u", "v", "r")))
     nu, level = np.zeros((MOTIONS, 6)), np.tile((1.0, 0.0, 0.0, 0.0), (MOTIONS, 1))
     nu[:, [0, 1, 5]] = velocity
     integrated = integrated_forces(moved, nu, level, np.zeros((MOTIONS, 6)))[..., [0, 1, 5]]
-    theory = turning.kirchhoff(huuv.theta, velocity)
+    theory = planar_turns.kirchhoff(huuv.theta, velocity)
     found = (
         ("equations", "force apart from Kirchhoff's", "N, N m", inertial - theory),
         ("equations", "power", "W", np.sum(inertial * velocity, axis=-1)),

@@ -15,7 +15,7 @@ from coeflab.bodies.mesh.mesh import TriangleMesh
 from coeflab.bodies.shape import OTHER, Part, Parts
 from coeflab.core.types import Array
 from coeflab.report.document import Figure
-from coeflab.report.figures import body_scene
+from coeflab.report.figures import part_pictures
 from coeflab.report.figures.body_view import BEHIND, HATCH, STRIPE, Sheet, View, outline_path
 from coeflab.report.figures.palette import COLOURS
 from coeflab.report.figures.rulers import BELOW, LEFT, rulers
@@ -55,8 +55,8 @@ def body_figure(name: str, shape: Parts, mesh: TriangleMesh | None, anchor: str)
     anchor : str
         Unique in the document.
     """
-    of_parts = [body_scene.part_facets(p).reshape(-1, 3) for p in shape.parts]
-    drawn = None if mesh is None else body_scene.picture_surface(mesh)
+    of_parts = [part_pictures.part_facets(p).reshape(-1, 3) for p in shape.parts]
+    drawn = None if mesh is None else part_pictures.picture_surface(mesh)
     points = np.concatenate([*of_parts, *([] if drawn is None else [drawn[0]])])
     size = np.maximum(np.ptp(points, axis=0), 1e-3 * float(np.ptp(points, axis=0).max()))
     scale = _scale(size)
@@ -111,9 +111,11 @@ def _placed(axes: Axes, view: View, points: Array, corner: tuple[float, float], 
 
 def _labels(sheet: Sheet, shape: Parts, between: tuple[float, float]) -> None:
     """Names of the poor stand-ins and of the largest parts over and under the view, in their order from left to right, with lines to the parts."""
-    size = [float(np.prod(np.sort(np.ptp(body_scene.part_facets(p).reshape(-1, 3), axis=0))[1:])) for p in shape.parts]
+    size = [
+        float(np.prod(np.sort(np.ptp(part_pictures.part_facets(p).reshape(-1, 3), axis=0))[1:])) for p in shape.parts
+    ]
     chosen = sorted(
-        sorted(range(len(size)), key=lambda i: (not body_scene.is_poor(shape.parts[i]), -size[i], i))[:LABELLED]
+        sorted(range(len(size)), key=lambda i: (not part_pictures.is_poor(shape.parts[i]), -size[i], i))[:LABELLED]
     )
     names = {i: _marked(shape.parts[i]) for i in chosen}
     at = {i: sheet.on_paper(shape.parts[i].centre) for i in chosen}
@@ -175,11 +177,11 @@ class _Stripes(HandlerBase):
 
 
 def _legend(axes: Axes, shape: Parts, with_mesh: bool) -> None:
-    forms = {body_scene.form_name(p.form) for p in shape.parts}
+    forms = {part_pictures.form_name(p.form) for p in shape.parts}
     handles: list[Any] = [
-        Patch(facecolor=COLOURS[c], edgecolor="none", label=f) for f, c in body_scene.COLOUR_OF.items() if f in forms
+        Patch(facecolor=COLOURS[c], edgecolor="none", label=f) for f, c in part_pictures.COLOUR_OF.items() if f in forms
     ]
-    if any(body_scene.is_poor(p) for p in shape.parts):
+    if any(part_pictures.is_poor(p) for p in shape.parts):
         handles.append(_Poor(edgecolor=COLOURS["ink"], facecolor="none", linewidth=1.2, label="poor stand-in"))
     if with_mesh:
         handles.append(Line2D([], [], color=COLOURS["ink"], linewidth=0.9, label="outline of the mesh"))
@@ -200,7 +202,9 @@ def _legend(axes: Axes, shape: Parts, with_mesh: bool) -> None:
 
 
 def _caption(shape: Parts, mesh: TriangleMesh | None) -> str:
-    marked = " Striped: a poor stand-in for its piece of the mesh." if any(map(body_scene.is_poor, shape.parts)) else ""
+    marked = (
+        " Striped: a poor stand-in for its piece of the mesh." if any(map(part_pictures.is_poor, shape.parts)) else ""
+    )
     if mesh is None:
         return (
             "The parts of the body, coloured by form, in orthographic views at one scale; the oblique one is larger."
@@ -211,7 +215,7 @@ def _caption(shape: Parts, mesh: TriangleMesh | None) -> str:
 
 def _description(shape: Parts, mesh: TriangleMesh | None) -> str:
     parts = ", ".join(
-        f"{p.name} ({body_scene.form_name(p.form)}{body_scene.POOR if body_scene.is_poor(p) else ''})"
+        f"{p.name} ({part_pictures.form_name(p.form)}{part_pictures.POOR if part_pictures.is_poor(p) else ''})"
         for p in shape.parts
     )
     return f"Side, front, top and oblique views of {parts}" + (" with the outline of the mesh." if mesh else ".")

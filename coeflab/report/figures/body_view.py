@@ -14,7 +14,7 @@ from coeflab.bodies.mesh import silhouettes
 from coeflab.bodies.mesh.solids import Surface
 from coeflab.bodies.shape import Parts
 from coeflab.core.types import Array, dataclass
-from coeflab.report.figures import body_scene, form_facets, part_pictures
+from coeflab.report.figures import form_facets, part_pictures
 from coeflab.report.figures.palette import COLOURS
 
 LIGHT = np.array([-0.35, 0.65, 0.67]) / np.linalg.norm([-0.35, 0.65, 0.67])
@@ -80,9 +80,9 @@ class Sheet:
         for i in sorted(range(len(depth)), key=lambda i: (depth[i], i)):
             part = shape.parts[i]
             self.part(
-                body_scene.part_facets(part),
-                body_scene.COLOUR_OF[body_scene.form_name(part.form)],
-                body_scene.is_poor(part),
+                part_pictures.part_facets(part),
+                part_pictures.COLOUR_OF[part_pictures.form_name(part.form)],
+                part_pictures.is_poor(part),
                 part_pictures.is_convex(part.form),
             )
         if outline is not None:
