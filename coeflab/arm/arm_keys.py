@@ -16,7 +16,7 @@ from coeflab.core import declarations as takes
 from coeflab.core.errors import InputError, shown
 from coeflab.core.types import Array
 from coeflab.core.units import STANDARD_GRAVITY, with_unit
-from coeflab.law.added_mass import definiteness
+from coeflab.law.definiteness import definiteness
 from coeflab.law.rigid_body import inertia_doubt
 from coeflab.law.transforms import about_axis, moved, rotation, turned
 from coeflab.law.water import ROUND_DENSITY

@@ -23,7 +23,7 @@ from coeflab.arm.thrusters import Thruster
 from coeflab.core.errors import InputError
 from coeflab.core.types import Array, brief, locked, locking
 from coeflab.core.units import STANDARD_GRAVITY
-from coeflab.law.added_mass import definiteness
+from coeflab.law.definiteness import definiteness
 from coeflab.law.rigid_body import inertia_doubt, rigid_body_inertia
 from coeflab.law.water import ROUND_DENSITY
 

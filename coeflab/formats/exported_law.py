@@ -17,7 +17,7 @@ import numpy as np
 
 from coeflab.core.types import Array, brief
 from coeflab.core.units import STANDARD_GRAVITY
-from coeflab.law.added_mass import definiteness
+from coeflab.law.definiteness import definiteness
 from coeflab.law.force_law import AHEAD, ForceLaw, ForceTerm
 from coeflab.law.named_terms import canonical
 from coeflab.law.symbols import COMPONENTS, CONTROLS, MOTIONS, derivative

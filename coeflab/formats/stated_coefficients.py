@@ -6,7 +6,7 @@ import numpy as np
 
 from coeflab.core.types import Array
 from coeflab.formats.stated_file import Law
-from coeflab.law.added_mass import definiteness
+from coeflab.law.definiteness import definiteness
 from coeflab.law.rigid_body import ideal_quadratics
 from coeflab.law.scaling import Conditions, Scaling
 from coeflab.law.symbols import COMPONENTS, MOTIONS

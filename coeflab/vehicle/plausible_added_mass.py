@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from coeflab.core.finding import Severity
 from coeflab.core.table import Check
-from coeflab.law.added_mass import ROUNDING, definiteness
+from coeflab.law.definiteness import ROUNDING, definiteness
 from coeflab.law.symbols import COMPONENTS, MOTIONS, derivative
 from coeflab.vehicle import imported_numbers
 

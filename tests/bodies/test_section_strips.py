@@ -11,7 +11,7 @@ from coeflab.bodies.closed_forms.sections import section_integrals
 from coeflab.bodies.mesh_sections import contours
 from coeflab.bodies.stations import joints, stations
 from coeflab.bodies.strips import ellipsoid_correction, strips
-from coeflab.law.added_mass import definiteness
+from coeflab.law.definiteness import definiteness
 
 PI = np.pi
 Mesh = tuple[np.ndarray, np.ndarray]

@@ -48,7 +48,8 @@ from coeflab.bodies.simplify.part_forms import THIN, likeness
 from coeflab.core.errors import InputError
 from coeflab.core.options import one_of, parse_options
 from coeflab.core.types import locked
-from coeflab.law.added_mass import AddedMass, composed
+from coeflab.law.added_mass import AddedMass
+from coeflab.law.definiteness import composed
 
 SIMPLIFIED_FACES = 20_000
 SMOOTH, EDGED = 2.0, 4.0 / 3.0  # orders of the panel method, without and with right-angled edges

@@ -17,7 +17,8 @@ from coeflab.bodies.stations import joints
 from coeflab.bodies.strips import Strips, ellipsoid_correction, strips
 from coeflab.core.errors import InputError
 from coeflab.core.options import bounded, one_of, parse_options
-from coeflab.law.added_mass import AddedMass, composed
+from coeflab.law.added_mass import AddedMass
+from coeflab.law.definiteness import composed
 
 summary = "sections along x, exact for circles, by boundary elements for any shape; end correction none or lamb"
 citations = ("newman1977", "bryson1954", "lamb1932")

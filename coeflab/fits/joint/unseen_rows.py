@@ -11,7 +11,7 @@ from coeflab.core.types import Array
 from coeflab.fits.joint.components import Component, Constraint
 from coeflab.fits.results.lack_of_fit import UNLIKELY, chance
 from coeflab.fits.results.out_of_sample import OutOfSample, errors_of
-from coeflab.fits.statistics.groups import predict_left_out, thirds
+from coeflab.fits.statistics.cross_validation import predict_left_out, thirds
 from coeflab.fits.statistics.least_squares import Index
 from coeflab.fits.statistics.stacked import freed, scatter, stack
 from coeflab.law.named_terms import Equation

@@ -9,7 +9,7 @@ import numpy as np
 from coeflab.core.texts import text_of
 from coeflab.core.types import Array, dataclass
 from coeflab.fits.results.fitted_model import FittedModel
-from coeflab.fits.statistics.groups import predict_left_out, thirds
+from coeflab.fits.statistics.cross_validation import predict_left_out, thirds
 from coeflab.law.terms import design
 
 RANGE = "the response's range"

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from coeflab.core.types import Array, dataclass
 from coeflab.fits.statistics import linear_model, robust_errors
-from coeflab.fits.statistics.groups import constrained_space
+from coeflab.fits.statistics.cross_validation import constrained_space
 from coeflab.fits.statistics.least_squares import Factorised, Index, factorise
 
 OPEN = 1e-7

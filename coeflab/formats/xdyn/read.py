@@ -28,7 +28,7 @@ from coeflab.formats.xdyn.actuators import read_limits
 from coeflab.formats.xdyn.law import XdynBody, xdyn_body
 from coeflab.formats.xdyn.multiplied_out import MultipliedOut, multiplied_out
 from coeflab.formats.xdyn.products import Product
-from coeflab.law.added_mass import definiteness
+from coeflab.law.definiteness import definiteness
 from coeflab.law.rigid_body import MassProperties, about_another, ideal_quadratics, inertia_doubt
 from coeflab.law.scaling import Conditions, Scaling, powers_of
 from coeflab.law.symbols import COMPONENTS, CONTROLS, MOTIONS, derivative

@@ -35,7 +35,7 @@ from coeflab.formats.missing_parts import missing_water
 from coeflab.formats.xdyn.actuators import command_names, held_lines, limited, thrust_lines
 from coeflab.formats.xdyn.expressions import settled
 from coeflab.formats.xdyn.law import ADDED, BUOYANCY, DAMPING, FUNCTIONS, HERE, RIGID, THRUST, XdynBody, xdyn_body
-from coeflab.law.added_mass import definiteness
+from coeflab.law.definiteness import definiteness
 from coeflab.law.force_law import ForceTerm
 from coeflab.law.rigid_body import MassProperties, about_another, rigid_body_inertia
 from coeflab.law.symbols import COMPONENTS, CONTROLS, MOTIONS
