@@ -47,10 +47,8 @@ def _added_mass(p: ParameterFile) -> tuple[Check, ...]:
     ]
     if not differing:
         return ()
-    return (Check(
-        NAME, "added mass stated twice", Severity.NOTE, f"{'; '.join(differing)} (SI)", "one place, or equal",
-        "The coefficient is used, the matrix for all other entries; --accelerations computed uses the matrix alone.",
-    ),)  # fmt: skip
+    found = "; ".join(differing)
+    return (Check.of("plausibility.added_mass_twice", "added mass stated twice", Severity.NOTE, found=found),)
 
 
 def _inertia(p: ParameterFile) -> tuple[Check, ...]:
@@ -60,17 +58,13 @@ def _inertia(p: ParameterFile) -> tuple[Check, ...]:
     across = np.diag(mass.inertia_matrix)[1:]
     if np.all(np.abs(across - mass.inertia) <= ALIKE * mass.inertia):
         return ()
-    return (Check(
-        NAME, "mass.inertia and mass.inertia_matrix", Severity.NOTE,
-        f"{mass.inertia:.4g}, and Iy {across[0]:.4g}, Iz {across[1]:.4g} kg m^2", "one of them, or equal", "The matrix is used.",
-    ),)  # fmt: skip
+    iy, iz = across.tolist()
+    places = "mass.inertia and mass.inertia_matrix"
+    return (Check.of("plausibility.inertia_twice", places, Severity.NOTE, statistic=mass.inertia, iy=iy, iz=iz),)
 
 
 def _intervals(p: ParameterFile) -> tuple[Check, ...]:
     bare = [c.symbol for c in p.coefficients if c.status is Status.OK and c.u95 is None]
     if not bare:
         return ()
-    return (Check(
-        NAME, ", ".join(bare), Severity.WARN, "status ok without u95", "a U95",
-        "ok says that an interval exists. Write u95, or the status stated for a number without one.",
-    ),)  # fmt: skip
+    return (Check.of("plausibility.ok_without_u95", ", ".join(bare), Severity.WARN),)
