@@ -79,10 +79,6 @@ def added_mass_findings(p: ParameterFile, signs: str = "") -> list[Check]:
     return out + _size(p, np.diag(matrix)[:3])
 
 
-def _check(subject: str, severity: Severity, statistic: str, rule: str, comment: str = "") -> Check:
-    return Check(NAME, subject, severity, statistic, rule, comment)
-
-
 def _names(which: NDArray[np.bool_]) -> str:
     return ", ".join(f"{COMPONENTS[i]}{MOTIONS[i]}" for i in np.flatnonzero(which))
 
@@ -92,8 +88,8 @@ def _diagonal(stated: Array, signs: str) -> list[Check]:
     negative = np.nan_to_num(stated) < 0.0
     if np.any(negative):
         values = ", ".join(f"{x:.4g}" for x in stated[negative])
-        out.append(_check(f"M_A {_names(negative)}", Severity.FAIL, values, "not below zero",
-                          f"Acceleration derivatives are the negatives of added masses: a sign is wrong. {signs}".rstrip()))  # fmt: skip
+        facts = {"values": values, "signs": f" {signs}".rstrip()}
+        out.append(Check.of("plausibility.negative_diagonal", f"M_A {_names(negative)}", Severity.FAIL, **facts))
     across = (stated == 0.0) & (np.arange(6) < 3)
     if np.any(across):
         out.append(Check.of("plausibility.zero_diagonal", f"M_A {_names(across)}", Severity.WARN))
@@ -104,11 +100,12 @@ def _size(p: ParameterFile, diagonal: Array) -> list[Check]:
     out = []
     prime = float(np.max(diagonal[1:])) / p.scaling.unit("m", p.conditions.density)
     if p.scaling.length_name != "1 m" and 0.0 < prime < SMALLEST_PRIME:
-        out.append(_check("M_A Yv, Zw", Severity.FAIL, f"{prime:.1e} of 1/2 rho L^3", f"at least {SMALLEST_PRIME:g}",
-                          "Primes read as SI? Convert them; in a .m file r3 = rho*L^3/2 shows that they are primes."))  # fmt: skip
+        out.append(
+            Check.of("plausibility.small_prime", "M_A Yv, Zw", Severity.FAIL, statistic=prime, threshold=SMALLEST_PRIME)
+        )
     if p.mass is not None and (heaviest := float(np.max(diagonal))) > HEAVY * p.mass.mass:
-        out.append(_check("M_A", Severity.WARN, f"{heaviest / p.mass.mass:.3g} of the mass", f"at most {HEAVY:g}",
-                          "Usual for flat bodies only."))  # fmt: skip
+        share = heaviest / p.mass.mass
+        out.append(Check.of("plausibility.heavy", "M_A", Severity.WARN, statistic=share, threshold=HEAVY))
     across = diagonal[1:][diagonal[1:] > 0.0]
     if p.mass is not None and across.size and not _in_air(p) and (share := float(np.max(across)) / p.mass.mass) < LIGHT:
         out.append(Check.of("plausibility.small_across", "M_A Yv, Zw", Severity.WARN, share=share, light=LIGHT))
@@ -124,8 +121,8 @@ def _asymmetry(matrix: Array) -> list[Check]:
         if apart > ROUNDING:
             severity = Severity.WARN if apart <= MISTYPED else Severity.FAIL
             pair = f"M_A {COMPONENTS[i]}{MOTIONS[j]} and {COMPONENTS[j]}{MOTIONS[i]}"
-            out.append(_check(pair, severity, f"{matrix[i, j]:.8g} and {matrix[j, i]:.8g}", "equal",
-                              f"Apart by {apart:.1e} of the diagonal. An added mass is symmetric."))  # fmt: skip
+            entries = {"one": matrix[i, j], "other": matrix[j, i]}
+            out.append(Check.of("plausibility.asymmetric", pair, severity, statistic=apart, **entries))
     return out
 
 
@@ -230,16 +227,15 @@ def _signs(own: list[_Own], signs: str, p: ParameterFile) -> list[Check]:
     out = []
     drives = _driving(own, p)
     if drives:
-        it = "It drives the motion that it" if len(drives) == 1 else "They drive the motions that they"
-        out.append(_check(", ".join(primed(o.term.symbol) for o in drives), Severity.FAIL,
-                          ", ".join(f"{o.term.coefficient:.4g}" for o in drives) + " (SI)", "below zero",
-                          f"{it} should damp: a sign is wrong. {signs}".rstrip()))  # fmt: skip
+        out.append(Check.of(
+            "plausibility.drives", ", ".join(primed(o.term.symbol) for o in drives), Severity.FAIL, signs=f" {signs}".rstrip(),
+            values=", ".join(f"{o.term.coefficient:.4g}" for o in drives), count="one" if len(drives) == 1 else "many",
+        ))  # fmt: skip
     for o in own:
         if not o.odd and o.term.component in "YKN":
             name = primed(o.term.symbol)
-            out.append(_check(name, Severity.WARN, f"{o.term.coefficient:.4g} (SI)",
-                              "zero for a body symmetric port to starboard",
-                              f"It pushes one way in both directions; {name[0]}{o.motion}|{o.motion}|' is meant?"))  # fmt: skip
+            facts = {"force": name[0], "motion": o.motion}
+            out.append(Check.of("plausibility.one_way", name, Severity.WARN, statistic=o.term.coefficient, **facts))
     return out
 
 
@@ -263,10 +259,9 @@ def _rates(p: ParameterFile, own: list[_Own]) -> list[Check]:
                 usual = a.term.coefficient * (diagonal[j] / diagonal[i]) ** (0.5 * (n + 1))
                 same_way = b.term.coefficient * float(np.sign(usual))
                 if 0.0 < same_way < SMALLEST[n] * abs(usual):
-                    out.append(_check(
-                        primed(b.term.symbol), Severity.WARN, f"{b.term.coefficient:.4g}, {same_way / abs(usual):.2g} of k^{n + 1} {a.term.symbol}",
-                        f"at least {SMALLEST[n]:g}; k = {(diagonal[j] / diagonal[i]) ** 0.5:.3g} m of the added mass",
-                        "Is it per degree and second? Rates are in rad/s.",
+                    out.append(Check.of(
+                        "plausibility.small_rate", primed(b.term.symbol), Severity.WARN, statistic=same_way / abs(usual), power=n + 1,
+                        threshold=SMALLEST[n], value=b.term.coefficient, of=a.term.symbol, k=(diagonal[j] / diagonal[i]) ** 0.5,
                     ))  # fmt: skip
     return out
 
@@ -280,20 +275,13 @@ def _mirrored(p: ParameterFile) -> list[Check]:
     if matrix[1, 5] and _alike(matrix[1, 5], matrix[2, 4]):
         opposite.append(("M_A Yr and Zq", matrix[1, 5], matrix[2, 4]))
     out = []
-    for wrong, rule, comment in (
-        (
-            opposite,
-            "of opposite signs",
-            "A body alike in both planes has them opposite with z down (FRD). Were the planes copied from different axes?",
-        ),
-        (equal, "of one sign", "A body alike in both planes has them equal with z down (FRD): a sign is wrong."),
-    ):
+    for wrong, due in ((opposite, "opposite"), (equal, "equal")):
         found = [f for f in wrong if f is not None]
         if found:
             pairs, values = (
                 "; ".join(x) for x in zip(*((n, f"{x:.4g} and {y:.4g}") for n, x, y in found), strict=True)
             )
-            out.append(_check(pairs, Severity.WARN, values, rule, comment))
+            out.append(Check.of("plausibility.mirrored", pairs, Severity.WARN, values=values, due=due))
     return out
 
 
@@ -334,10 +322,8 @@ def _ideal_products(p: ParameterFile) -> list[Check]:
                     wrong.append((primed(t.symbol), t.coefficient, theory))
     if not wrong or not right:  # all of them reversed is a simulator's own convention
         return []
-    return [_check(
-        ", ".join(w[0] for w in wrong), Severity.WARN, "; ".join(f"{x:.4g}, by the added mass {y:.4g}" for _, x, y in wrong),
-        "Kirchhoff's equations", "Of the size that the added mass gives, and the other sign: a sign is wrong.",
-    )]  # fmt: skip
+    values = "; ".join(f"{x:.4g}, by the added mass {y:.4g}" for _, x, y in wrong)
+    return [Check.of("plausibility.kirchhoff", ", ".join(w[0] for w in wrong), Severity.WARN, values=values)]
 
 
 def _alike(a: float, b: float, within: float = ALIKE) -> bool:
