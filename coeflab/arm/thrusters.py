@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from coeflab.core.errors import InputError
+from coeflab.core.texts import input_error
 from coeflab.core.types import Array, brief, locked
 
 DIRECTIONS = ("surge", "sway", "heave", "roll", "pitch", "yaw")
@@ -262,14 +263,11 @@ def require_all_directions(thrusters: Sequence[Thruster]) -> Array:
         Thrusters that cannot make every force and moment, with those that are lost.
     """
     if not thrusters:
-        raise InputError(
-            "no thrusters", "thrusters that make every force and moment", column="thruster", advice=WITHOUT
-        )
+        raise input_error("arm.thrusters_make_every", column="thruster", advice=WITHOUT)
     matrix = thruster_matrix(thrusters)
     if uncontrolled := uncontrolled_directions(matrix):
-        raise InputError(
-            f"thrusters that make no {', no '.join(uncontrolled)}", "a thruster matrix of rank 6", column="thruster",
-            advice=f"Add or turn a thruster. {WITHOUT}",
+        raise input_error(
+            "arm.thrusters_make", column="thruster", uncontrolled=", no ".join(uncontrolled), without=WITHOUT,
         )  # fmt: skip
     return np.asarray(np.linalg.pinv(matrix))
 

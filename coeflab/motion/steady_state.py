@@ -37,8 +37,7 @@ from dataclasses import field
 import numpy as np
 from numpy.typing import NDArray
 
-from coeflab.core.errors import InputError
-from coeflab.core.texts import text_of
+from coeflab.core.texts import input_error, text_of
 from coeflab.core.types import Array, dataclass, locked
 from coeflab.law.symbols import ANGULAR, COMPONENTS, MOTIONS, primed
 from coeflab.motion.approach import along
@@ -164,9 +163,9 @@ def steady_motions(moved: Vehicle, thrust: Array, controls: Array | None = None)
     """
     level = PLANES["horizontal"]
     if not set(moved.free) <= set(level):
-        raise InputError(
-            f"{', '.join(m for m in moved.free if m not in level)} free", f"some of {' '.join(level)}", column="free",
-            advice="Steady turns are sought on a level course only.",
+        raise input_error(
+            "motion.steady_turns_sought", column="free", free=", ".join(m for m in moved.free if m not in level),
+            level=" ".join(level),
         )  # fmt: skip
     n, at = len(thrust), list(moved.free_columns)
     angles = np.zeros((n, 3)) if controls is None else controls

@@ -278,6 +278,6 @@ def test_large_meshes_are_announced(
     with caplog.at_level(logging.INFO, "coeflab"):
         load(path)
         assert caplog.messages == ["reading 80 faces of ball.stl"]
-        monkeypatch.setattr(mesh_file, "WORTH_SAYING", 80)
+        monkeypatch.setattr(mesh_file, "LARGE_MESH", 80)
         load(path)
     assert caplog.messages[1] == "ball.stl: 80 faces, about 0.1 GB of memory"

@@ -250,7 +250,7 @@ def test_a_body_far_off_right_angles_is_not_tidied() -> None:
 
 def test_many_faces_are_decimated_and_said(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(study, "MOST_FACES", 2000)
-    monkeypatch.setattr(study, "KEPT_FACES", 1500)
+    monkeypatch.setattr(study, "SIMPLIFIED_FACES", 1500)
     found = simplify(body(Manifold.sphere(1.0, 64)))
     assert "faces decimated to" in found.statements[0]
     assert found.part_file().decode().count("decimated") == 1
