@@ -23,8 +23,8 @@ from coeflab.arm.control import ControlledRun, gain_of, most_thrust
 from coeflab.bodies.body import Body
 from coeflab.bodies.mesh import silhouettes
 from coeflab.bodies.shape import Cylinder, Ellipsoid, Part, Parts
-from coeflab.core.errors import InputError
 from coeflab.core.text.bounded import own_text
+from coeflab.core.texts import input_error
 from coeflab.core.types import Array, brief, locking
 from coeflab.motion.dynamics import rotations
 from coeflab.motion.trajectory import Trajectory
@@ -82,9 +82,7 @@ def hull_of(body: Body) -> Array:
     """(3,) semi-axes, m, of the hull of a body whose reader is ``arm``."""
     hull = body.shape.parts[0].form if isinstance(body.shape, Parts) else None
     if not isinstance(hull, Ellipsoid):
-        raise InputError(
-            f"{body.name}, without an ellipsoid for a hull", "the body of a vehicle with an arm", column="reader"
-        )
+        raise input_error("arm.without_ellipsoid_hull", column="reader", name=body.name)
     return np.asarray(hull.axes)
 
 

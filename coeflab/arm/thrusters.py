@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from coeflab.core.errors import InputError
+from coeflab.core.texts import input_error
 from coeflab.core.types import Array, brief, locked
 
 DIRECTIONS = ("surge", "sway", "heave", "roll", "pitch", "yaw")

@@ -218,9 +218,8 @@ def _check_angles(rows: Rows) -> None:
     if not len(rows.y):
         raise input_error("fits.no_usable_row", column="glide_polar", response=rows.response, campaign=rows.campaign)
     if np.ptp(rows.x["alpha"]) <= NEAR_ZERO:
-        raise InputError(
-            f"one angle of attack, {np.degrees(rows.x['alpha'][0]):.3g} degrees, on every row of {rows.campaign}",
-            "alpha [deg] with several angles, or w [m/s] beside u [m/s]", column="glide_polar",
+        raise input_error(
+            "fits.one_angle_attack", column="glide_polar", degrees=np.degrees(rows.x["alpha"][0]), campaign=rows.campaign,
         )  # fmt: skip
 
 

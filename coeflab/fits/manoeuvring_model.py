@@ -156,9 +156,9 @@ def _not_their_own_images(equations: Sequence[Equation], tables: Sequence[ForceT
     between = next((e for e in equations if len({symbol[0] for symbol, _ in e.weights}) > 1), None)
     if turned is None or between is None:
         return
-    raise InputError(
-        f"{shown(between)} over {turned.name}, which is {turned.by_symmetry} turned by symmetry", "rows that were run",
-        column="manoeuvring_model.constraints", advice="Leave the equation out: it holds by construction.",
+    raise input_error(
+        "fits.over_turned_symmetry", column="manoeuvring_model.constraints", between=shown(between), name=turned.name,
+        by_symmetry=turned.by_symmetry,
     )  # fmt: skip
 
 

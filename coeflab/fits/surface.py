@@ -95,9 +95,9 @@ def _parities(chosen: Options, name: str) -> dict[str, str]:
     for word in chosen.parity:
         variable, _, rule = word.partition("=")
         if variable not in chosen.variables or rule not in PARITIES:
-            raise InputError(
-                shown(word), f"variable=rule with one of {', '.join(chosen.variables)} and one of {', '.join(PARITIES)}",
-                column="surface.parity",
+            raise input_error(
+                "fits.variable_rule_one", column="surface.parity", found=shown(word), variables=", ".join(chosen.variables),
+                parities=", ".join(PARITIES),
             )  # fmt: skip
         if rule == "symmetric":
             if sided != [variable]:

@@ -133,9 +133,9 @@ def steady_motions(moved: Vehicle, thrust: Array, controls: Array | None = None)
     """
     level = PLANES["horizontal"]
     if not set(moved.free) <= set(level):
-        raise InputError(
-            f"{', '.join(m for m in moved.free if m not in level)} free", f"some of {' '.join(level)}", column="free",
-            advice="Steady turns are sought on a level course only.",
+        raise input_error(
+            "motion.steady_turns_sought", column="free", free=", ".join(m for m in moved.free if m not in level),
+            level=" ".join(level),
         )  # fmt: skip
     n, at = len(thrust), list(moved.free_columns)
     angles = np.zeros((n, 3)) if controls is None else controls

@@ -203,9 +203,9 @@ def vehicle(
         raise InputError(f"a mass of {mass.mass:g} kg", "above zero", column="mass")
     strange = [f for f in free if f not in MOTIONS]
     if strange or plane not in ("", *PLANES):
-        raise InputError(
-            shown(strange[0] if strange else plane), f"some of {' '.join(MOTIONS)}, or a plane: {', '.join(PLANES)}",
-            column="free" if strange else "plane",
+        raise input_error(
+            "motion.unknown_plane", column="free" if strange else "plane", found=shown(strange[0] if strange else plane),
+            motions=" ".join(MOTIONS), planes=", ".join(PLANES),
         )  # fmt: skip
     water = water_inertia(parameters, accelerations)
     parameters = with_accelerations(parameters, accelerations)

@@ -24,6 +24,7 @@ from coeflab.core.errors import InputError
 from coeflab.core.files import located, stem
 from coeflab.core.machine import one_thread
 from coeflab.core.text.bounded import log_text
+from coeflab.core.texts import input_error
 from coeflab.core.types import Array
 from coeflab.core.units import positive_typed, three_typed
 from coeflab.fits import BY_DEFAULT
@@ -149,10 +150,7 @@ def estimated(
     if scaling is None:
         if not shape.length > 0.0:
             hollow = "" if any(c.volume for c in body.configurations) else f" It has no volume either. {CLOSED}"
-            raise InputError(
-                f"a body {shape.length:g} m long along x, to make the primes by", "a length above zero",
-                advice=f"State one: --length, length under [prime] in its body.toml, or [scaling] in a plan.{hollow}",
-            )  # fmt: skip
+            raise input_error("study.body_long_along", length=shape.length, hollow=hollow)
         scaling = Scaling(shape.length, "length over all")
     point = body.reference_point if plan.reference_point is None else plan.reference_point
     body = replace(body, scaling=scaling, reference_point=point)

@@ -265,9 +265,10 @@ def _no_table(raw: RawTable, offers: Sequence[Proposal]) -> InputError | None:
                 "tables.forces_unread", raw.path, found=found, one=listed([shown(n) for n in [*one][:MOST_IDLE]]),
                 next=next(iter(one.values())),
             )  # fmt: skip
-    return InputError(
-        over or f"no name of a force{', an angle, a speed or a rate' * (not roles & {*SETTINGS})}: {names}", "forces over settings",
-        file=raw.path, advice=f"{IDENTIFY} " * bool(over) + 'If it is one of forces, name its columns: --map "COLUMN=Y [N]", or by --words FILE.toml.',
+    return input_error(
+        "tables.forces_over_settings", raw.path,
+        found=over or f"no name of a force{', an angle, a speed or a rate' * (not roles & {*SETTINGS})}: {names}",
+        advice=f'{IDENTIFY} ' * bool(over) + 'If it is one of forces, name its columns: --map "COLUMN=Y [N]", or by --words FILE.toml.',
     )  # fmt: skip
 
 

@@ -388,10 +388,9 @@ def read_parameter_file(path: Path) -> ParameterFile:
         given = complaints(why, text, path, own_bytes(SCHEMA_FILE), advice(version))
         if not is_later(version, SCHEMA_VERSION):
             raise given from None
-        raise InputError(
-            f"{given.found} in a file of schema_version {version}",
-            f"schema_version {FIRST_VERSION} to {SCHEMA_VERSION}, which this release of coeflab reads",
-            file=path, line=given.line, key=given.column, advice=advice(version),
+        raise input_error(
+            "vehicle.file_schema_version", path, given.line, key=given.column, found=given.found, version=version,
+            first_version=FIRST_VERSION, schema_version=SCHEMA_VERSION, advice=advice(version),
         ) from None  # fmt: skip
     except CoeflabError as why:
         raise InputError(str(why), "a valid parameter file", file=path) from None

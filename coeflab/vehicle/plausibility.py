@@ -150,10 +150,8 @@ def _buoyancy(p: ParameterFile) -> list[Check]:
         )
     below = h.centre_of_buoyancy[2] - float(centre_of_gravity(p)[2])
     if below > 0.0:
-        out.append(Check(
-            NAME, "hydrostatics.centre_of_buoyancy", Severity.WARN, f"{below:.4g} m below the centre of gravity", "above it",
-            "The vehicle turns over. z is down: was the point copied from axes with z up?",
-        ))  # fmt: skip
+        place = "hydrostatics.centre_of_buoyancy"
+        out.append(Check.of("plausibility.capsizes", place, Severity.WARN, statistic=below))
     return out
 
 

@@ -17,8 +17,8 @@ from itertools import combinations
 import numpy as np
 from numpy.typing import NDArray
 
-from coeflab.core.errors import InputError
 from coeflab.core.finding import Finding, Severity
+from coeflab.core.texts import input_error
 from coeflab.core.types import dataclass
 from coeflab.law.force_law import CONTROLS, EVERYWHERE, WIND, ForceTerm
 from coeflab.law.symbols import COMPONENTS, MOTIONS, primed
@@ -225,10 +225,9 @@ def _among_tables(every: Sequence[TableSource], found: list[Finding]) -> list[Ta
         if a not in out or b not in out or a.component != b.component or not a.meets(b):
             continue
         if a.variables == b.variables or not (a.variables < b.variables or b.variables < a.variables):
-            raise InputError(
-                f"{name_of(a.model)} and {name_of(b.model)}, both with a force of {a.component} {_shared(a, b)}",
-                f"one table of {a.component} for each product of variables", column="models",
-                advice="Fit one table over all of its variables, or give derivatives.",
+            raise input_error(
+                "vehicle.both_force", column="models", name_of=name_of(a.model), name_of_2=name_of(b.model),
+                component=a.component, shared=_shared(a, b),
             )  # fmt: skip
         less, more = (a, b) if a.variables < b.variables else (b, a)
         out.remove(less)

@@ -60,9 +60,7 @@ def added_mass(body: Body, density: float, options: Mapping[str, Any] | None = N
     parse_options(NoOptions, options or {}, "ellipsoid")
     shape = body.require_shape()
     if not shape.volume > 0.0:
-        raise InputError(
-            f"{body.name}, whose parts displace nothing", "a body with a volume", advice="Use the method primitives."
-        )
+        raise input_error("bodies.whose_parts_displace", name=body.name)
     axes, centre, turn, rough = _axes(shape), shape.centre_of_volume, np.eye(3), False
     if isinstance(shape, Parts) and len(shape.parts) == 1 and isinstance(shape.parts[0].form, Ellipsoid):
         axes, turn = shape.parts[0].form.axes, shape.parts[0].rotation

@@ -38,6 +38,7 @@ from coeflab.core.errors import InputError, shown
 from coeflab.core.finding import Finding, Severity
 from coeflab.core.machine import compiles, physical_memory, stage
 from coeflab.core.options import bounded, measured, one_of, parse_options, share
+from coeflab.core.texts import input_error
 from coeflab.core.types import Array, brief
 from coeflab.law.added_mass import AddedMass
 
@@ -259,12 +260,7 @@ def _wall(body: Body, panelled: _Panelled, chosen: Options) -> Wall | None:
     wall = Wall(point, np.array([0.0, 0.0, side]), factor)
     reach = float(np.max((panelled.finest.reshape(-1, 3) - body.reference_point) @ wall.normal))
     if reach >= chosen.distance:
-        raise InputError(
-            f"a wall {chosen.distance:g} m from the reference point of a body that reaches {reach:.4g} m towards it",
-            f"more than {reach:.4g} m",
-            column="panel.distance",
-            advice="The distance is from the reference point to the wall; the method needs water between body and wall.",
-        )
+        raise input_error("bodies.wall_reference_point", column="panel.distance", distance=chosen.distance, reach=reach)
     return wall
 
 
@@ -346,31 +342,22 @@ def _gate(mesh: TriangleMesh, remeshed: bool) -> None:
         )
     ratio = slenderness(mesh.integrals.second_moments)
     if ratio < THIN:
-        raise InputError(
-            f"a body whose smallest side is {ratio:.3g} of the next",
-            f"a ratio of at least {THIN:g} for panels on both faces",
-            advice="Describe it as a plate for the method primitives, whose formulas hold for zero thickness.",
-        )
+        raise input_error("bodies.body_whose_smallest", ratio=ratio, thin=THIN)
 
 
 def _thin(panelled: _Panelled) -> float:
     """Share of the surface on which panels are larger than the body is thick."""
     share = _thin_share(panelled)
     if share > THIN_SHARE:
-        raise InputError(
-            f"a body thinner than its panels are large on {share:.0%} of its surface, of {panelled.count:,} panels",
-            f"at most {THIN_SHARE:.0%} of such surface",
-            column="panels",
-            advice="Describe thin parts as plates for the method primitives, or as open sheets of the mesh.",
+        raise input_error(
+            "bodies.body_thinner_than", column="panels", share=share, count=panelled.count, thin_share=THIN_SHARE
         )
     return share
 
 
 def _compiled(kernel: str, panels: int) -> bool:
     if kernel == "numba" and not compiles():
-        raise InputError(
-            "the compiled kernel without numba", "numba", advice='Install "coeflab[fast]", or use the kernel numpy.'
-        )
+        raise input_error("bodies.compiled_kernel_without")
     return (kernel == "numba" or (kernel == "auto" and panels > COMPILE_FROM)) and compiles()
 
 
@@ -379,11 +366,8 @@ def _fits(panels: int) -> None:
     there = physical_memory()
     needed = memory_needed(panels)
     if there is not None and needed > there:
-        raise InputError(
-            f"{panels} panels, which need {needed / 2**30:.1f} GiB",
-            f"at most the {there / 2**30:.1f} GiB of this machine",
-            column="panels",
-            advice="Memory grows with the square of the panels: ask for fewer; extrapolation makes up for them.",
+        raise input_error(
+            "bodies.panels_need_gib", column="panels", panels=panels, needed=needed / 2**30, there=there / 2**30
         )
 
 

@@ -47,6 +47,7 @@ from coeflab.bodies.shape import (
 from coeflab.bodies.simplify.part_forms import THIN, likeness
 from coeflab.core.errors import InputError
 from coeflab.core.options import one_of, parse_options
+from coeflab.core.texts import input_error
 from coeflab.core.types import locked
 from coeflab.law.added_mass import AddedMass
 from coeflab.law.definiteness import composed
@@ -291,11 +292,7 @@ def added_mass(body: Body, density: float, options: Mapping[str, Any] | None = N
     if isinstance(shape, TriangleMesh) and ends == "lamb":
         shape, words = _as_plate(shape)
     if not isinstance(shape, Parts):
-        raise InputError(
-            f"{body.name}, which has no parts",
-            "a body of parts, or a mesh like one plate",
-            advice="Use the method ellipsoid or strip, or make parts of a mesh with coeflab simplify.",
-        )
+        raise input_error("bodies.has_parts", name=body.name)
     matrix = composed(
         [_own(p.form, density, ends) for p in shape.parts],
         [p.rotation for p in shape.parts],

@@ -75,11 +75,7 @@ def added_mass(body: Body, density: float, options: Mapping[str, Any] | None = N
     else:
         revolution = as_revolution(shape)
         if revolution is None:
-            raise InputError(
-                f"{body.name}, which is no mesh and no body of revolution about x",
-                "a mesh, a hull form, or a single cylinder, spheroid or sphere along x",
-                advice="Use the method primitives or ellipsoid.",
-            )
+            raise input_error("bodies.mesh_body_revolution", name=body.name)
         *own, statements = _of_revolution(revolution, corrected)
     fine, *coarse = (composed([density * m], [np.eye(3)], [shape.centre_of_volume], body.reference_point) for m in own)
     error = np.abs(fine - coarse[0]) if coarse else None
@@ -108,11 +104,7 @@ def _of_mesh(
         found = strips(points, shape.faces, count, places=places)
         coarse = strips(points, shape.faces, count // 2, COARSE, places)
     except ValueError as why:
-        raise InputError(
-            f"{body.name}, {why}",
-            "a closed mesh whose sections have at most 40 contours",
-            advice="Unite its parts first.",
-        ) from None
+        raise input_error("bodies.closed_mesh_whose", name=body.name, why=why) from None
     live = np.diag(found.matrix) > ROUNDING * np.diag(found.matrix).max()
     change = float(np.max(np.abs(np.diag(coarse.matrix)[live] / np.diag(found.matrix)[live] - 1.0)))
     words = (

@@ -100,11 +100,8 @@ def faces_of(path: Path) -> int:
         raise InputError("no faces", "triangles of a closed surface", file=path)
     needed, most = memory_needed(count, text_of(path, count)), most_memory()
     if needed > most:
-        raise InputError(
-            f"{count} faces, which would take {_in_words(needed)}",
-            f"at most {most / 1e9:.1f} GB, three quarters of this machine's",
-            file=path,
-            advice="Decimate the mesh first: 100,000 faces describe a hull to better than 0.1 %.",
+        raise input_error(
+            "mesh.faces_would_take", path, count=count, in_words=_in_words(needed), most=most / 1000000000.0
         )
     return count
 
@@ -149,10 +146,7 @@ def load(path: Path) -> tuple[Array, NDArray[np.int64]]:
     extra: dict[str, Any] = {"skip_materials": True} if kind in ("obj", "glb") else {}
     if kind in PACKAGES and find_spec(PACKAGES[kind][0]) is None:
         package, name, group = PACKAGES[kind]
-        raise InputError(
-            f"a {name} without the package that reads it", package, file=path,
-            advice=f'Install "coeflab[{group}]", or save the body as STL or GLB.',
-        )  # fmt: skip
+        raise input_error("mesh.without_package_reads", path, name=name, expected=package, group=group)
     if kind in ("step", "stp"):
         extra = {"tol_angular": STEP_ANGLE}
     metres = metres_of_dae(path) if kind == "dae" else 1.0
@@ -179,10 +173,5 @@ def load(path: Path) -> tuple[Array, NDArray[np.int64]]:
         raise InputError(f"{len(faces)} readable faces of {count}", "all of them", file=path, advice="Export it again.")
     wrong = int(np.sum(~np.isfinite(vertices).all(axis=1)))
     if wrong:
-        raise InputError(
-            f"{wrong} vertices with coordinates that are no numbers",
-            "finite coordinates",
-            file=path,
-            advice="Export it again.",
-        )
+        raise input_error("mesh.vertices_coordinates_numbers", path, wrong=wrong)
     return vertices, faces

@@ -66,11 +66,7 @@ class TriangleMesh:
             raise InputError("a face whose vertex does not exist", f"indices from 0 to {len(self.vertices) - 1}")
         object.__setattr__(self, "integrals", mesh_integrals(self.vertices, faces))
         if not self.integrals.volume > 0.0:
-            raise InputError(
-                f"a mesh that encloses {self.integrals.volume:g} m^3",
-                "a volume above zero",
-                advice="Do its faces look outward?",
-            )
+            raise input_error("mesh.mesh_encloses", volume=self.integrals.volume)
 
     @property
     def volume(self) -> float:

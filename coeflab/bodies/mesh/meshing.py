@@ -38,6 +38,7 @@ from coeflab.bodies.shape import (
     Turned,
 )
 from coeflab.core.errors import InputError, shown
+from coeflab.core.texts import input_error
 from coeflab.core.types import Array, Faces
 
 FEWEST, MOST = 64, 2_000_000
@@ -145,11 +146,7 @@ def _thinned(mesh: TriangleMesh, panels: int) -> tuple[Array, Faces]:
 def _assembled(shape: Parts, panels: int) -> TriangleMesh:
     flat = [p.name for p in shape.parts if isinstance(p.form, Plate)]
     if flat:
-        raise InputError(
-            f"the plate {shown(flat[0])}, which has no thickness and encloses nothing",
-            "parts that displace water",
-            advice="The added-mass method primitives has the formulas of plates; a box has a thickness.",
-        )
+        raise input_error("mesh.plate_has_thickness", flat=shown(flat[0]))
     share = np.sqrt([surface_of(p.form) for p in shape.parts])
     counts = np.maximum(panels * share / share.sum(), FEWEST).astype(int)
     meshes = [_placed(part, int(count)) for part, count in zip(shape.parts, counts, strict=True)]

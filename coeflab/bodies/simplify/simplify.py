@@ -98,14 +98,10 @@ def simplify(
     largest = max(range(len(found)), key=lambda k: found[k].solid.volume())
     likes[largest] = _no_thick_plate(likes[largest], found[largest].solid.volume())
     if all(like.kind == "plate" for like in likes):
-        raise InputError(
-            "nothing but plates", "at least one part that displaces water",
-            advice="Describe them in a body.toml of reader primitives; of one alone coeflab added-mass takes the mesh itself.",
-        )  # fmt: skip
+        raise input_error("bodies.nothing_but_plates")
     if expected is not None and len(found) != expected:
-        raise InputError(
-            f"{len(found)} parts ({', '.join(_counted(likes))})", f"{expected} parts, as --parts says",
-            advice="Name parts with --box, or look at the overlay without --parts.",
+        raise input_error(
+            "bodies.parts_parts_says", count_of_found=len(found), counted=", ".join(_counted(likes)), expected=expected,
         )  # fmt: skip
     length = float(mesh.extents.max())
     parts = _named([_part(p, like, length) for p, like in zip(found, likes, strict=True)])
@@ -144,10 +140,7 @@ def _refuse_idle_boxes(boxes: Sequence[NamedBox], mesh: TriangleMesh) -> None:
         if not np.any(np.all((mesh.vertices >= b.low) & (mesh.vertices <= b.high), axis=1)):
             low, high = mesh.vertices.min(axis=0), mesh.vertices.max(axis=0)
             reach = ", ".join(f"{axis} {a:.4g} to {z:.4g}" for axis, a, z in zip("xyz", low, high, strict=True))
-            raise InputError(
-                f"the box {shown(b.name)}, which holds no vertex of the mesh", f"a box within {reach} m",
-                advice="Boxes are in m, FRD, from the datum: z is down.",
-            )  # fmt: skip
+            raise input_error("bodies.box_holds_vertex", name=shown(b.name), reach=reach)
 
 
 def _boxed(whole: solids.Solid, boxes: Sequence[NamedBox]) -> tuple[list[_Piece], solids.Solid]:
@@ -184,10 +177,7 @@ def _pieces(whole: solids.Solid, boxes: Sequence[NamedBox]) -> tuple[list[_Piece
     out, rest = _boxed(whole, boxes)
     shells = solids.pieces(rest)
     if any(s.volume() < -least for s in shells):
-        raise InputError(
-            "a shell that looks inward: a cavity, or reversed faces", "shells that look outward",
-            advice="Remove inner surfaces: added mass belongs to the outer one.",
-        )  # fmt: skip
+        raise input_error("bodies.shell_looks_inward")
     alone = [p for s in without_overlap(shells) for p in solids.pieces(s)]
     shared = sum(s.volume() for s in shells) - sum(p.volume() for p in alone)
     unassigned = 0.0
@@ -308,9 +298,7 @@ def _convex(found: list[_Piece], likes: list[Likeness]) -> tuple[list[_Piece], l
             least = CHIPS * piece.solid.volume()
             parts = [p for p in convex_pieces(piece.solid) if p.volume() > least]
         except ImportError:
-            raise InputError(
-                "--split convex without the package vhacdx", "vhacdx", advice='Install "coeflab[convex]".'
-            ) from None
+            raise input_error("bodies.split_convex_without") from None
         missing_volume += piece.solid.volume() - sum(p.volume() for p in parts)
         words.append(
             f"what matches no form, {piece.solid.volume():.5g} m^3, cut into {len(parts)} nearly convex pieces"

@@ -12,7 +12,7 @@ from coeflab.core.axes import Datum
 from coeflab.core.finding import Finding, Severity
 from coeflab.core.limits import JSON_BYTES
 from coeflab.core.provenance import InputFile, sha256_of
-from coeflab.core.table import Check
+from coeflab.core.table import Check, as_check
 from coeflab.core.text.toml import read_text
 from coeflab.core.texts import input_error
 from coeflab.core.units import STANDARD_GRAVITY
@@ -101,8 +101,7 @@ def _units(found: MFile, values: MValues) -> list[Check]:
     mass, forces = found.named(*MASSES), found.named("W")
     if rho := found.named(*DENSITIES):
         out.append(
-            Check("mss", f"density {rho[0]}", Severity.NOTE, f"{rho[1]:g}", f"{SLUGS[0]:g} to {SLUGS[1]:g} slug/ft^3",
-                  "The file is in slug, foot and pound; everything is converted to SI.")
+            as_check("mss", Finding.of("model.in_slugs", f"density {rho[0]}", Severity.NOTE, statistic=rho[1], low=SLUGS[0], high=SLUGS[1]))
             if values.imperial
             else water("mss", rho[1], f"density {rho[0]}")
         )  # fmt: skip
@@ -144,8 +143,7 @@ def _capsizes(found: MFile) -> tuple[Check, ...]:
     if gravity_at is None or above <= 0.0:
         return ()
     keys = gravity_at[0] + (f" and {buoyancy_at[0]}" if buoyancy_at else "")
-    return (Check("mss", keys, Severity.WARN, f"centre of gravity {above:.4g} above that of buoyancy", "below it",
-                  "The vehicle turns over. z is down here: was it copied from axes with z up (ENU, FLU)?"),)  # fmt: skip
+    return (as_check("mss", Finding.of("model.capsizes", keys, Severity.WARN, statistic=above)),)
 
 
 def _own_conditions(found: MFile, path: Path) -> tuple[Scaling, Conditions]:

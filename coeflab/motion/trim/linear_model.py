@@ -381,9 +381,9 @@ def _placed(
             raise InputError(shown(name), f"some of {', '.join(PLACES)}", column="also")
         k, n, m = list(PLACES).index(name), len(states), place.matrix.shape[1]
         if not place.matrix[k].any():
-            raise InputError(
-                f"{name}, which {', '.join(s.name for s in states)} do not move", f"motions that change {name}", column="also",
-                advice=f"--free with {'r' if name == 'heading' else 'w or q'}.",
+            raise input_error(
+                "motion.unmoved_states", column="also", name=name, states=", ".join(s.name for s in states),
+                value="r" if name == "heading" else "w or q",
             )  # fmt: skip
         a, b = a.grown(1, 1), b.grown(1, 0)
         a.matrix[n, :m], a.error[n, :m] = place.matrix[k], place.error[k]
