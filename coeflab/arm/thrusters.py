@@ -263,14 +263,11 @@ def thrust_allocation(thrusters: Sequence[Thruster]) -> Array:
         Thrusters that cannot make every force and moment, with those that are lost.
     """
     if not thrusters:
-        raise InputError(
-            "no thrusters", "thrusters that make every force and moment", column="thruster", advice=NO_THRUSTERS_NEEDED
-        )
+        raise input_error("arm.thrusters_make_every", column="thruster", advice=NO_THRUSTERS_NEEDED)
     matrix = thruster_matrix(thrusters)
     if uncontrolled := uncontrolled_directions(matrix):
-        raise InputError(
-            f"thrusters that make no {', no '.join(uncontrolled)}", "a thruster matrix of rank 6", column="thruster",
-            advice=f"Add or turn a thruster. {NO_THRUSTERS_NEEDED}",
+        raise input_error(
+            "arm.thrusters_make", column="thruster", uncontrolled=", no ".join(uncontrolled), without=NO_THRUSTERS_NEEDED,
         )  # fmt: skip
     return np.asarray(np.linalg.pinv(matrix))
 

@@ -13,6 +13,7 @@ from coeflab.bodies.thrusters import FULL, Screw, Squares, Thruster, bollard_squ
 from coeflab.bodies.wageningen import AREAS, BLADES, PITCHES
 from coeflab.core import declarations as takes
 from coeflab.core.errors import InputError, shown
+from coeflab.core.texts import input_error
 from coeflab.core.types import Array
 
 CURVE = takes.numbers(2, "none", "a point [command, thrust in N]")
@@ -214,11 +215,7 @@ class ThrusterKeys(takes.Declaration):
         if self.lag is not None and not self.lag > 0.0:
             raise InputError(f"{self.lag:g} s", "a time constant above zero", column="lag")
         if (self.tilt_axis is None) != (self.tilt_limit is None):
-            raise InputError(
-                "one of them",
-                "tilt_axis and tilt_limit",
-                column="tilt_axis" if self.tilt_axis is None else "tilt_limit",
-            )
+            raise input_error("bodies.one_them", column="tilt_axis" if self.tilt_axis is None else "tilt_limit")
         if self.tilt_axis is not None and not np.linalg.norm(self.tilt_axis) > 0.0:
             raise InputError("an axis without a direction", "[x, y, z], one of them not zero", column="tilt_axis")
 

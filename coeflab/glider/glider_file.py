@@ -9,6 +9,7 @@ from typing import Annotated
 from coeflab.core import declarations as takes
 from coeflab.core.errors import InputError, shown
 from coeflab.core.text.toml import read_toml
+from coeflab.core.texts import input_error
 from coeflab.core.units import STANDARD_GRAVITY
 from coeflab.glider.glider import BuoyancyEngine, Glider, GliderMass, GliderPhase, SlidingMass, StatedPolar
 from coeflab.glider.masses import MassModel
@@ -155,11 +156,6 @@ def gliders_at(path: Path) -> tuple[Glider, ...]:
     for file in files:
         out.append(read_glider(file))
         if (name := out[-1].name) in found:
-            raise InputError(
-                f"{shown(name)}, the name in {found[name].name} too",
-                "a name of its own",
-                file=file,
-                column="glider.name",
-            )
+            raise input_error("glider.name_too", file, column="glider.name", name=shown(name), name_2=found[name].name)
         found[name] = file
     return tuple(out)

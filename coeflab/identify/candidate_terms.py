@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from coeflab.core.errors import InputError, shown
+from coeflab.core.texts import input_error
 from coeflab.identify.candidates import ALONG, allowed, candidates, same
 from coeflab.identify.force_balance import Candidate
 from coeflab.law.symbols import COMPONENTS, CONTROLS, MOTIONS, derivative
@@ -50,16 +51,14 @@ def candidate_terms(
         named = [_named(s, parameters) for s in asked]
         strange = [t for t in named if t.component not in components]
         if strange:
-            raise InputError(
-                strange[0].symbol, f"terms of {', '.join(components)}: the series have no other motion",
-                column="identify.terms",
+            raise input_error(
+                "identify.terms_series_have", column="identify.terms", found=strange[0].symbol,
+                components=", ".join(components),
             )  # fmt: skip
         loose = [t for t in named if t.rate and t.component not in driven]
         if loose:
-            raise InputError(
-                f"{loose[0].symbol} without a known force along {loose[0].component}",
-                "thrust, weight or buoyancy that sets the scale", column="identify.terms",
-                advice="Inertia and coefficients are known only together then; take the added mass from elsewhere.",
+            raise input_error(
+                "identify.without_known_force", column="identify.terms", symbol=loose[0].symbol, component=loose[0].component,
             )  # fmt: skip
         return named
     if asked:

@@ -12,6 +12,7 @@ import re
 from dataclasses import dataclass
 
 from coeflab.core.errors import InputError, shown
+from coeflab.core.texts import input_error
 from coeflab.core.types import brief
 from coeflab.law.symbols import COMPONENTS, LONGEST, PORT_STARBOARD
 from coeflab.law.terms import Term, term_of
@@ -182,10 +183,7 @@ def _side(text: str, whole: str, place: str) -> tuple[dict[Key, tuple[str, float
 
 
 def _not_an_equation(text: str, place: str) -> InputError:
-    return InputError(
-        shown(text), 'a linear equation such as "Mw = -Nv" or "2 Yr + Nv = 0.01"', column=place,
-        advice="Separate several equations by commas: Mw = -Nv, Zw = Yv.",
-    )  # fmt: skip
+    return input_error("law.linear_equation_such", column=place, found=shown(text))
 
 
 def split_equations(text: str) -> list[str]:

@@ -48,10 +48,8 @@ def _added_mass(p: ParameterFile) -> tuple[Check, ...]:
     ]
     if not differing:
         return ()
-    both = Finding.of(
-        "parameter_file.added_twice", "added mass stated twice", Severity.NOTE, differing="; ".join(differing)
-    )
-    return (as_check(NAME, both),)
+    found = "; ".join(differing)
+    return (Check.of("plausibility.added_mass_twice", "added mass stated twice", Severity.NOTE, found=found),)
 
 
 def _inertia(p: ParameterFile) -> tuple[Check, ...]:
@@ -62,10 +60,9 @@ def _inertia(p: ParameterFile) -> tuple[Check, ...]:
     across = np.diag(mass.inertia_matrix)[1:]
     if np.all(np.abs(across - mass.inertia) <= ALIKE * mass.inertia):
         return ()
-    return (as_check(NAME, Finding.of(
-        "parameter_file.inertia_twice", "mass.inertia and mass.inertia_matrix", Severity.NOTE, statistic=mass.inertia,
-        pitch=float(across[0]), yaw=float(across[1]),
-    )),)  # fmt: skip
+    iy, iz = across.tolist()
+    places = "mass.inertia and mass.inertia_matrix"
+    return (Check.of("plausibility.inertia_twice", places, Severity.NOTE, statistic=mass.inertia, iy=iy, iz=iz),)
 
 
 def _intervals(p: ParameterFile) -> tuple[Check, ...]:
@@ -73,4 +70,4 @@ def _intervals(p: ParameterFile) -> tuple[Check, ...]:
     bare = [c.symbol for c in p.coefficients if c.status is Status.OK and c.u95 is None]
     if not bare:
         return ()
-    return (as_check(NAME, Finding.of("parameter_file.no_u95", ", ".join(bare), Severity.WARN)),)
+    return (Check.of("plausibility.ok_without_u95", ", ".join(bare), Severity.WARN),)

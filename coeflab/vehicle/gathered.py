@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from coeflab.core.errors import InputError, ScalingMismatchError, shown
+from coeflab.core.errors import ScalingMismatchError, shown
 from coeflab.core.texts import input_error
 from coeflab.core.types import dataclass
 from coeflab.fits.results.fit_result import covariance_of
@@ -30,9 +30,9 @@ def _literature(
     known = {r.name: r for r in references}
     for name in group.literature:
         if name not in known:
-            raise InputError(
-                f"no reference {shown(name)}", f"one of {', '.join(known) or 'none'}",
-                column=f"parameter_file.{group.name}.literature",
+            raise input_error(
+                "vehicle.unknown_reference", column=f"parameter_file.{group.name}.literature", name=shown(name),
+                value=", ".join(known) or "none",
             )  # fmt: skip
         reference, point = known[name], among.reference_point
         if reference.literature and reference.reference_point is None:

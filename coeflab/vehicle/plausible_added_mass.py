@@ -63,11 +63,6 @@ def added_mass_findings(p: ParameterFile, signs: str = "") -> list[Check]:
     return out + _size(p, np.diag(matrix)[:3])
 
 
-def plausibility_check(subject: str, severity: Severity, statistic: str, rule: str, comment: str = "") -> Check:
-    """A row of the table of checks."""
-    return Check(NAME, subject, severity, statistic, rule, comment)
-
-
 def _names(which: NDArray[np.bool_]) -> str:
     return ", ".join(f"{COMPONENTS[i]}{MOTIONS[i]}" for i in np.flatnonzero(which))
 
@@ -77,8 +72,8 @@ def _diagonal(stated: Array, signs: str) -> list[Check]:
     negative = np.nan_to_num(stated) < 0.0
     if np.any(negative):
         values = ", ".join(f"{x:.4g}" for x in stated[negative])
-        out.append(plausibility_check(f"M_A {_names(negative)}", Severity.FAIL, values, "not below zero",
-                          f"Acceleration derivatives are the negatives of added masses: a sign is wrong. {signs}".rstrip()))  # fmt: skip
+        facts = {"values": values, "signs": f" {signs}".rstrip()}
+        out.append(Check.of("plausibility.negative_diagonal", f"M_A {_names(negative)}", Severity.FAIL, **facts))
     across = (stated == 0.0) & (np.arange(6) < 3)
     if np.any(across):
         out.append(Check.of("plausibility.zero_diagonal", f"M_A {_names(across)}", Severity.WARN))
@@ -89,11 +84,12 @@ def _size(p: ParameterFile, diagonal: Array) -> list[Check]:
     out = []
     prime = float(np.max(diagonal[1:])) / p.scaling.unit("m", p.conditions.density)
     if p.scaling.length_name != "1 m" and 0.0 < prime < SMALLEST_PRIME:
-        out.append(plausibility_check("M_A Yv, Zw", Severity.FAIL, f"{prime:.1e} of 1/2 rho L^3", f"at least {SMALLEST_PRIME:g}",
-                          "Primes read as SI? Convert them; in a .m file r3 = rho*L^3/2 shows that they are primes."))  # fmt: skip
+        out.append(
+            Check.of("plausibility.small_prime", "M_A Yv, Zw", Severity.FAIL, statistic=prime, threshold=SMALLEST_PRIME)
+        )
     if p.mass is not None and (heaviest := float(np.max(diagonal))) > HEAVY * p.mass.mass:
-        out.append(plausibility_check("M_A", Severity.WARN, f"{heaviest / p.mass.mass:.3g} of the mass", f"at most {HEAVY:g}",
-                          "Usual for flat bodies only."))  # fmt: skip
+        share = heaviest / p.mass.mass
+        out.append(Check.of("plausibility.heavy", "M_A", Severity.WARN, statistic=share, threshold=HEAVY))
     across = diagonal[1:][diagonal[1:] > 0.0]
     if p.mass is not None and across.size and not in_air(p) and (share := float(np.max(across)) / p.mass.mass) < LIGHT:
         out.append(Check.of("plausibility.small_across", "M_A Yv, Zw", Severity.WARN, share=share, light=LIGHT))
@@ -109,8 +105,8 @@ def _asymmetry(matrix: Array) -> list[Check]:
         if apart > ROUNDING:
             severity = Severity.WARN if apart <= MISTYPED else Severity.FAIL
             pair = f"M_A {COMPONENTS[i]}{MOTIONS[j]} and {COMPONENTS[j]}{MOTIONS[i]}"
-            out.append(plausibility_check(pair, severity, f"{matrix[i, j]:.8g} and {matrix[j, i]:.8g}", "equal",
-                              f"Apart by {apart:.1e} of the diagonal. An added mass is symmetric."))  # fmt: skip
+            entries = {"one": matrix[i, j], "other": matrix[j, i]}
+            out.append(Check.of("plausibility.asymmetric", pair, severity, statistic=apart, **entries))
     return out
 
 

@@ -12,7 +12,7 @@ from coeflab.core.types import dataclass
 from coeflab.law.rigid_body import ideal_quadratics
 from coeflab.law.symbols import COMPONENTS, LINEAR, MOTIONS, primed
 from coeflab.vehicle.force_law import force_law, force_of_tables
-from coeflab.vehicle.plausible_added_mass import MISTYPED, PROBE, plausibility_check, stated_matrix
+from coeflab.vehicle.plausible_added_mass import MISTYPED, PROBE, stated_matrix
 from coeflab.vehicle.second_order import products_once, slot
 
 if TYPE_CHECKING:
@@ -121,16 +121,15 @@ def _signs(own: list[_Own], signs: str, p: ParameterFile) -> list[Check]:
     out = []
     drives = _driving(own, p)
     if drives:
-        it = "It drives the motion that it" if len(drives) == 1 else "They drive the motions that they"
-        out.append(plausibility_check(", ".join(primed(o.term.symbol) for o in drives), Severity.FAIL,
-                          ", ".join(f"{o.term.coefficient:.4g}" for o in drives) + " (SI)", "below zero",
-                          f"{it} should damp: a sign is wrong. {signs}".rstrip()))  # fmt: skip
+        out.append(Check.of(
+            "plausibility.drives", ", ".join(primed(o.term.symbol) for o in drives), Severity.FAIL, signs=f" {signs}".rstrip(),
+            values=", ".join(f"{o.term.coefficient:.4g}" for o in drives), count="one" if len(drives) == 1 else "many",
+        ))  # fmt: skip
     for o in own:
         if not o.odd and o.term.component in "YKN":
             name = primed(o.term.symbol)
-            out.append(plausibility_check(name, Severity.WARN, f"{o.term.coefficient:.4g} (SI)",
-                              "zero for a body symmetric port to starboard",
-                              f"It pushes one way in both directions; {name[0]}{o.motion}|{o.motion}|' is meant?"))  # fmt: skip
+            facts = {"force": name[0], "motion": o.motion}
+            out.append(Check.of("plausibility.one_way", name, Severity.WARN, statistic=o.term.coefficient, **facts))
     return out
 
 
@@ -154,10 +153,9 @@ def _rates(p: ParameterFile, own: list[_Own]) -> list[Check]:
                 usual = a.term.coefficient * (diagonal[j] / diagonal[i]) ** (0.5 * (n + 1))
                 same_way = b.term.coefficient * float(np.sign(usual))
                 if 0.0 < same_way < SMALLEST[n] * abs(usual):
-                    out.append(plausibility_check(
-                        primed(b.term.symbol), Severity.WARN, f"{b.term.coefficient:.4g}, {same_way / abs(usual):.2g} of k^{n + 1} {a.term.symbol}",
-                        f"at least {SMALLEST[n]:g}; k = {(diagonal[j] / diagonal[i]) ** 0.5:.3g} m of the added mass",
-                        "Is it per degree and second? Rates are in rad/s.",
+                    out.append(Check.of(
+                        "plausibility.small_rate", primed(b.term.symbol), Severity.WARN, statistic=same_way / abs(usual), power=n + 1,
+                        threshold=SMALLEST[n], value=b.term.coefficient, of=a.term.symbol, k=(diagonal[j] / diagonal[i]) ** 0.5,
                     ))  # fmt: skip
     return out
 
@@ -171,20 +169,13 @@ def _mirrored(p: ParameterFile) -> list[Check]:
     if matrix[1, 5] and _alike(matrix[1, 5], matrix[2, 4]):
         opposite.append(("M_A Yr and Zq", matrix[1, 5], matrix[2, 4]))
     out = []
-    for wrong, rule, comment in (
-        (
-            opposite,
-            "of opposite signs",
-            "A body alike in both planes has them opposite with z down (FRD). Were the planes copied from different axes?",
-        ),
-        (equal, "of one sign", "A body alike in both planes has them equal with z down (FRD): a sign is wrong."),
-    ):
+    for wrong, due in ((opposite, "opposite"), (equal, "equal")):
         found = [f for f in wrong if f is not None]
         if found:
             pairs, values = (
                 "; ".join(x) for x in zip(*((n, f"{x:.4g} and {y:.4g}") for n, x, y in found), strict=True)
             )
-            out.append(plausibility_check(pairs, Severity.WARN, values, rule, comment))
+            out.append(Check.of("plausibility.mirrored", pairs, Severity.WARN, values=values, due=due))
     return out
 
 
@@ -225,10 +216,8 @@ def _ideal_products(p: ParameterFile) -> list[Check]:
                     wrong.append((primed(t.symbol), t.coefficient, theory))
     if not wrong or not right:  # all of them reversed is a simulator's own convention
         return []
-    return [plausibility_check(
-        ", ".join(w[0] for w in wrong), Severity.WARN, "; ".join(f"{x:.4g}, by the added mass {y:.4g}" for _, x, y in wrong),
-        "Kirchhoff's equations", "Of the size that the added mass gives, and the other sign: a sign is wrong.",
-    )]  # fmt: skip
+    values = "; ".join(f"{x:.4g}, by the added mass {y:.4g}" for _, x, y in wrong)
+    return [Check.of("plausibility.kirchhoff", ", ".join(w[0] for w in wrong), Severity.WARN, values=values)]
 
 
 def _alike(a: float, b: float, within: float = ALIKE) -> bool:

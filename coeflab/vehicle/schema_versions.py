@@ -10,8 +10,9 @@ from typing import Any
 
 import numpy as np
 
-from coeflab.core.errors import InputError, shown
+from coeflab.core.errors import shown
 from coeflab.core.stored import FIRST_VERSION, stored_fields
+from coeflab.core.texts import input_error
 
 VERSIONS = {
     "1.0": "Coefficients with uncertainty and covariance, scaling, conditions, mass, covered ranges, provenance.",
@@ -49,9 +50,10 @@ def readable(version: object, file: Path) -> str:
     """
     if isinstance(version, str) and _MINOR.fullmatch(version):
         return version
-    raise InputError(
-        "no schema_version" if version is None else f"schema_version {shown(version)}",
-        f"{FIRST_VERSION} to {SCHEMA_VERSION}, which this release of coeflab reads", file=file, column="schema_version",
+    raise input_error(
+        "vehicle.this_release_coeflab", file, column="schema_version",
+        found="no schema_version" if version is None else f"schema_version {shown(version)}", first_version=FIRST_VERSION,
+        schema_version=SCHEMA_VERSION,
         advice="Is it a parameter file of coeflab?" if version is None else "Read it with the release that wrote it.",
     )  # fmt: skip
 

@@ -335,11 +335,7 @@ def _gate(mesh: TriangleMesh, remeshed: bool) -> None:
         raise InputError(f"{flat} faces without area", "triangles", advice="Clean the mesh of degenerate faces.")
     torn = unmatched_edges(mesh.faces)
     if torn:
-        raise InputError(
-            f"{torn} edges that are not shared by two faces wound alike",
-            "a closed surface whose faces look outward",
-            advice="Close the holes, merge the vertices, and wind all faces alike.",
-        )
+        raise input_error("bodies.edges_shared_two", torn=torn)
     ratio = slenderness(mesh.integrals.second_moments)
     if ratio < THIN:
         raise input_error("bodies.body_whose_smallest", ratio=ratio, thin=THIN)

@@ -10,6 +10,7 @@ from coeflab.core.errors import InputError, shown
 from coeflab.core.limits import GLB_DEEPEST, GLB_NODES, JSON_BYTES
 from coeflab.core.text.bounded import stream_of, whole_bytes
 from coeflab.core.text.json import parse_json
+from coeflab.core.texts import input_error
 
 COMPONENT_BYTES = {5120: 1, 5121: 1, 5122: 2, 5123: 2, 5125: 4, 5126: 4}
 COMPONENTS = {"SCALAR": 1, "VEC2": 2, "VEC3": 3, "VEC4": 4, "MAT2": 4, "MAT3": 9, "MAT4": 16}
@@ -36,12 +37,7 @@ def glb_faces(path: Path) -> int:
             found = f"version {words[1]}" if words[1] != 2 else "no description behind the header"
             raise InputError(found, "a GLB of version 2 that begins with its description", file=path)
         if words[2] != size or words[3] > min(size - 20, JSON_BYTES):
-            raise InputError(
-                f"{size} bytes behind a header that counts {words[2]}, {words[3]} of them description",
-                "a whole GLB",
-                file=path,
-                advice="Export it again, or copy it again: it may have been cut short.",
-            )
+            raise input_error("mesh.bytes_behind_header_2", path, size=size, words=words[2], words_2=words[3])
         described = stream.read(words[3])
         stored = int.from_bytes(stream.read(8)[:4], "little")
     try:
@@ -54,9 +50,7 @@ def _faces(scene: dict[str, Any], stored: int, path: Path) -> int:
     packed = [e for e in scene.get("extensionsRequired", []) if e in PACKED]
     if packed or any("uri" in b for b in scene.get("buffers", [])):
         what = f"the extension {packed[0]}" if packed else "data in another file"
-        raise InputError(
-            what, "a plain GLB that holds all of its data", file=path, advice="Export it without compression."
-        )
+        raise input_error("mesh.plain_glb_holds", path, found=what)
     views, accessors = scene.get("bufferViews", []), scene.get("accessors", [])
     for a in accessors:
         view = views[a["bufferView"]]
@@ -84,9 +78,7 @@ def _require_tree(nodes: list[Any], path: Path) -> None:
         while level:
             depth += 1
             if depth > GLB_DEEPEST:
-                raise InputError(
-                    f"nodes more than {GLB_DEEPEST} deep", "a flatter GLB", file=path, advice="Join the parts."
-                )
+                raise input_error("mesh.nodes_more_than", path, glb_deepest=GLB_DEEPEST)
             reached += len(level)
             level = [c for n in level for c in nodes[n].get("children", [])]
     if reached != len(nodes):
@@ -117,13 +109,7 @@ def require_corners(path: Path) -> None:
             index = corner.partition(b"/")[0]
             at = int(index) if WHOLE.fullmatch(index) and len(index) < 20 else 0
             if not (1 <= at <= total or -above <= at <= -1):
-                raise InputError(
-                    f"a face with the corner {shown(corner.decode('latin-1'))}",
-                    f"numbers from 1 to {total}, of the vertices in the file",
-                    file=path,
-                    line=number,
-                    advice="Export it again.",
-                )
+                raise input_error("mesh.face_corner", path, number, decode=shown(corner.decode("latin-1")), total=total)
 
 
 LARGEST_TEXT = 320 << 20
@@ -142,12 +128,7 @@ EXPORT = "Export it again, or copy it again: it may have been cut short."
 def _text(path: Path) -> bytes:
     size = path.stat().st_size
     if size > LARGEST_TEXT:
-        raise InputError(
-            f"{size / 1e6:.0f} MB of text",
-            f"at most {LARGEST_TEXT >> 20} MiB of a text format",
-            file=path,
-            advice="Save the mesh as binary STL or PLY.",
-        )
+        raise input_error("mesh.mb_text", path, size=size / 1000000.0, largest_text=LARGEST_TEXT >> 20)
     return whole_bytes(path, LARGEST_TEXT)
 
 
@@ -161,12 +142,7 @@ def stl_faces(path: Path) -> int:
         return claimed
     if not (head.lstrip()[:5].lower() == b"solid" and b"facet" in head.lower()):
         if bool(head) and head.isascii() and all(c >= 32 or c in b"\t\r\n\f" for c in head):
-            raise InputError(
-                f"a text file that begins {shown(head.decode('ascii')[:40].strip())}",
-                "an STL: binary, or text that begins with solid and holds facets",
-                file=path,
-                advice="It is no STL: export the body again, or give the file its own suffix.",
-            )
+            raise input_error("mesh.text_file_begins", path, strip=shown(head.decode("ascii")[:40].strip()))
         raise InputError(
             f"{size} bytes" + (f" behind a header that counts {claimed} triangles" if len(head) >= 84 else ""),
             f"an STL: text, or binary of {84 + 50 * claimed} bytes" if len(head) >= 84 else "an STL, text or binary",
@@ -177,12 +153,7 @@ def stl_faces(path: Path) -> int:
     facets = text.count(b"endfacet")
     corners = sum(1 for _ in re.finditer(rb"^[ \t]*vertex\s", text, re.MULTILINE))
     if corners != 3 * facets or not text.rstrip().rpartition(b"\n")[2].strip().startswith(b"endsolid"):
-        raise InputError(
-            f"{corners} vertices in {facets} finished facets",
-            "three for each facet, and endsolid on the last line",
-            file=path,
-            advice=EXPORT,
-        )
+        raise input_error("mesh.vertices_finished_facets", path, corners=corners, facets=facets, advice=EXPORT)
     return facets
 
 
@@ -219,14 +190,10 @@ def ply_faces(path: Path) -> int:
         elif words[:1] == ["property"]:
             least += current * _ply_least(words, binary)
     if not counts.get("vertex") or not counts.get("face"):
-        raise InputError(
-            "no vertices or no faces", "a PLY of vertices and faces", file=path, advice="Is it a point cloud?"
-        )
+        raise input_error("mesh.vertices_faces", path)
     if size < least:
         claimed = f"{counts['vertex']} vertices and {counts['face']} faces"
-        raise InputError(
-            f"{size} bytes behind a header that counts {claimed}", f"{least} bytes or more", file=path, advice=EXPORT
-        )
+        raise input_error("mesh.bytes_behind_header", path, size=size, claimed=claimed, least=least, advice=EXPORT)
     if not binary:
         _text(path)
     return counts["face"]

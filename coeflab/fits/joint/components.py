@@ -8,7 +8,8 @@ from itertools import accumulate
 
 import numpy as np
 
-from coeflab.core.errors import InputError, shown
+from coeflab.core.errors import shown
+from coeflab.core.texts import input_error
 from coeflab.core.types import Array, dataclass
 from coeflab.fits.joint.rows import JointRows
 from coeflab.fits.statistics.groups import noise_of_groups
@@ -111,9 +112,10 @@ def constraint_of(equations: Sequence[Equation], parts: Sequence[Component], pla
             if named.key not in index:
                 names = ", ".join(s for p in parts for s in p.symbols)
                 apart = not named.term.factors and any(p.own and p.name == named.component for p in parts)
-                raise InputError(f"{shown(symbol)} in {shown(equation)}", f"coefficients of the model: {names}",
-                                 column=place, advice=f"Add {symbol} to the terms"
-                                 + ("; one value then serves all campaigns." if apart else "."))  # fmt: skip
+                raise input_error(
+                    "fits.coefficients_model", column=place, symbol=shown(symbol), equation=shown(equation), names=names,
+                    advice=f"Add {symbol} to the terms" + ("; one value then serves all campaigns." if apart else "."),
+                )  # fmt: skip
             matrix[row, index[named.key]] += weight
     return matrix, np.array([e.right for e in equations])
 

@@ -41,9 +41,9 @@ def area_of(value: float, name: str, scaling: Scaling) -> Area:
     if value == 0.0 and name == PRIMES:
         return Area(scaling.length**2, PRIMES, scaling.length)
     if value == 0.0 or name == PRIMES:
-        raise InputError(
-            f"area {value:g} m^2 named {name}", "an area above zero with its name, or neither", column="area",
-            advice=f"Names: {', '.join(AREAS[1:])}. Without both the area is {PRIMES} of {scaling}.",
+        raise input_error(
+            "fits.area_named", column="area", value=value, name=name, areas=", ".join(AREAS[1:]), primes=PRIMES,
+            scaling=scaling,
         )  # fmt: skip
     return Area(value, name, scaling.length)
 
@@ -64,9 +64,9 @@ def check_varies(rows: Rows) -> None:
     for name, x in rows.x.items():
         if np.ptp(x) <= AT_REST:
             others = ", ".join(v for v in rows.x if v != name)
-            raise InputError(
-                f"{name} never varies in the rows of {rows.response} ({rows.campaign})", "variables that all vary",
-                column="variables", advice=f"Use the fit polynomial for {others} alone.",
+            raise input_error(
+                "fits.never_varies_rows", column="variables", name=name, response=rows.response, campaign=rows.campaign,
+                others=others,
             )  # fmt: skip
 
 
