@@ -375,10 +375,10 @@ def read_log(case: FoamCase, application: str) -> tuple[dict[str, str], str, boo
                 tail = stream.read(1 << 14).decode("utf-8", "replace")
         case.files.append(file)
         build = re.search(r"^Build\s*:\s*(.+)$", head, re.MULTILINE)
-        com = re.search(r"OPENFOAM=(\d+)|\bv(\d{4})\b", build[1]) if build is not None else None
+        openfoam_com = re.search(r"OPENFOAM=(\d+)|\bv(\d{4})\b", build[1]) if build is not None else None
         words = {"solver": program[1]}
-        if com is not None:
-            words |= {"version": f"v{com[1] or com[2]}", "fork": "openfoam.com"}
+        if openfoam_com is not None:
+            words |= {"version": f"v{openfoam_com[1] or openfoam_com[2]}", "fork": "openfoam.com"}
         elif build is not None:
             words |= {"version": build[1].strip(), "fork": "openfoam.org"}
         if (met := re.search(r"solution converged in (\d+) iterations", tail)) is not None:
