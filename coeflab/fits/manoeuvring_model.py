@@ -15,7 +15,7 @@ from typing import Any
 
 import numpy as np
 
-from coeflab.core.errors import InputError, shown
+from coeflab.core.errors import shown
 from coeflab.core.options import one_of, parse_options, words
 from coeflab.core.texts import input_error
 from coeflab.core.types import Array, dataclass

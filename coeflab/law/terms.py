@@ -14,7 +14,6 @@ from typing import Annotated, NamedTuple
 import numpy as np
 
 from coeflab.core.stored import Means, Name, Within, stored
-from coeflab.core.texts import input_error
 from coeflab.core.types import Array, brief
 from coeflab.law.symbols import read_factors
 

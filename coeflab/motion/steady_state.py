@@ -12,7 +12,7 @@ from collections.abc import Callable, Mapping, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from coeflab.core.errors import InputError
+from coeflab.core.texts import input_error
 from coeflab.core.types import Array
 from coeflab.motion.vehicle import PLANES, Vehicle
 

@@ -17,6 +17,7 @@ from coeflab.core.files import shipped, stem
 from coeflab.core.finding import Finding
 from coeflab.core.machine import one_thread
 from coeflab.core.provenance import InputFile, sha256_of
+from coeflab.core.texts import input_error
 from coeflab.fits.joint.one_point import one_length
 from coeflab.fits.joint.rows import joint_name
 from coeflab.law.coefficient import Coefficient, Status

@@ -12,8 +12,8 @@ from coeflab.bodies.body import Body
 from coeflab.bodies.closed_forms.ellipsoid import ellipsoid_added_mass
 from coeflab.bodies.ellipsoid_misfit import BOUND, ellipsoid_misfit
 from coeflab.bodies.shape import Ellipsoid, Parts, Shape
-from coeflab.core.errors import InputError
 from coeflab.core.options import NoOptions, parse_options
+from coeflab.core.texts import input_error
 from coeflab.law.added_mass import AddedMass
 from coeflab.law.definiteness import composed
 

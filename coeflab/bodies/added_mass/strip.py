@@ -15,8 +15,8 @@ from coeflab.bodies.mesh.mesh import TriangleMesh
 from coeflab.bodies.shape import Revolution, Shape, as_revolution
 from coeflab.bodies.stations import joints
 from coeflab.bodies.strips import Strips, ellipsoid_correction, strips
-from coeflab.core.errors import InputError
 from coeflab.core.options import bounded, one_of, parse_options
+from coeflab.core.texts import input_error
 from coeflab.law.added_mass import AddedMass
 from coeflab.law.definiteness import composed
 

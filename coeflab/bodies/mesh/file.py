@@ -25,6 +25,7 @@ from coeflab.bodies.mesh.declared_faces import (
 from coeflab.core.errors import InputError, shown
 from coeflab.core.machine import physical_memory, stage
 from coeflab.core.text.bounded import stream_of
+from coeflab.core.texts import input_error
 from coeflab.core.types import Array
 
 if TYPE_CHECKING:

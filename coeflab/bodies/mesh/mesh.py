@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from coeflab.bodies.mesh.integrals import MeshIntegrals, mesh_integrals
 from coeflab.core.errors import InputError
+from coeflab.core.texts import input_error
 from coeflab.core.types import Array, brief, locked
 
 

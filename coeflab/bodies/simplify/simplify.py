@@ -22,6 +22,7 @@ from coeflab.bodies.simplify.volume_forms import Piece
 from coeflab.core.errors import InputError, shown
 from coeflab.core.machine import one_thread
 from coeflab.core.provenance import Source
+from coeflab.core.texts import input_error
 from coeflab.core.types import brief
 from coeflab.law.transforms import angles, rotation, snapped
 
