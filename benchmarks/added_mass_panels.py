@@ -22,7 +22,7 @@ from pathlib import Path
 import numpy as np
 
 from coeflab.bodies.added_mass import panel, strip
-from coeflab.bodies.closed_forms import ellipsoid_added_mass
+from coeflab.bodies.closed_forms.ellipsoid import ellipsoid_added_mass
 from coeflab.bodies.mesh.meshing import meshed
 from coeflab.bodies.readers import read_body
 from coeflab.bodies.shape import Ellipsoid, Part, Parts

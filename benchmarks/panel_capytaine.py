@@ -24,7 +24,7 @@ import numpy as np
 
 from coeflab.bodies.added_mass.panel import _rectangle
 from coeflab.bodies.mesh.meshing import meshed
-from coeflab.bodies.panel_solver.influence import bisected
+from coeflab.bodies.panel_solver.panels import bisected
 from coeflab.bodies.panel_solver.solve import panel_added_mass
 from coeflab.bodies.panel_solver.wall import Wall
 from coeflab.bodies.shape import Ellipsoid, Form, Part, Parts, Plate

@@ -12,7 +12,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from coeflab.bodies.closed_forms import BOX_RATIOS, CYLINDER_RATIOS
+from coeflab.bodies.closed_forms.parts import BOX_RATIOS, CYLINDER_RATIOS
 from coeflab.bodies.mesh.meshing import meshed
 from coeflab.bodies.panel_solver.solve import panel_added_mass
 from coeflab.bodies.shape import Box, Cylinder, Form, Part, Parts

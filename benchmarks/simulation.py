@@ -26,9 +26,10 @@ ROOT = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(ROOT))
 
 from coeflab.formats.xdyn import write as xdyn  # noqa: E402
-from coeflab.motion.dynamics import rates_of_one  # noqa: E402
+from coeflab.motion.ensemble import Ensemble, alone  # noqa: E402
 from coeflab.motion.manoeuvre import Manoeuvre, Phase  # noqa: E402
-from coeflab.motion.marching import Ensemble, alone, march  # noqa: E402
+from coeflab.motion.marching import march  # noqa: E402
+from coeflab.motion.rates_of_one import rates_of_one  # noqa: E402
 from coeflab.motion.simulators import rigid_body  # noqa: E402
 from coeflab.motion.vehicle import Vehicle, vehicle  # noqa: E402
 from tests.consumers.lxdyn_environment import PYTHON  # noqa: E402

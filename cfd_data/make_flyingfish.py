@@ -10,7 +10,7 @@ from __future__ import annotations
 import numpy as np
 
 from coeflab.core.files import shipped, write_all
-from coeflab.glider.glider import gliders_at
+from coeflab.glider.glider_file import gliders_at
 from coeflab.published.flyingfish.model import MEDIA, FlyingFish, read_flyingfish
 from coeflab.published.parameter_files import flyingfish_file
 from coeflab.published.thauv.in_space import dive_files

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from coeflab.core.files import shipped, write_atomically
-from coeflab.published.huuv.five_dof import five_dof_file, read_five_dof
+from coeflab.published.huuv.five_dof import read_five_dof
+from coeflab.published.huuv.five_dof_file import five_dof_file
 from coeflab.published.huuv.model import parameter_file, read_huuv
 
 if __name__ == "__main__":

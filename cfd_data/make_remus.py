@@ -10,7 +10,7 @@ from __future__ import annotations
 import numpy as np
 
 from coeflab.core.files import shipped, write_atomically
-from coeflab.formats.imported_file import Stated, imported_file
+from coeflab.formats.stated_file import Stated, stated_file
 from coeflab.law.rigid_body import MassProperties
 from coeflab.law.scaling import Conditions, Scaling
 from coeflab.vehicle.parameter_file import ParameterFile
@@ -44,7 +44,7 @@ def parameter_file() -> ParameterFile:
     primed = {s: (v / scaling.unit(s, at.density, at.speed), "motion") for s, v in values.items()}
     stated = Stated("remus100", "REMUS 100 (Prestero 2001)", scaling, at, primed, mass=mass, notes=NOTES)
     afloat = ParameterHydrostatics(volume=MASS / DENSITY, centre_of_buoyancy=(0.0, 0.0, 0.0))
-    return imported_file(stated, (), ("prestero2001",)).model_copy(update={"hydrostatics": afloat})
+    return stated_file(stated, (), ("prestero2001",)).model_copy(update={"hydrostatics": afloat})
 
 
 if __name__ == "__main__":

@@ -63,7 +63,7 @@ def _homes() -> dict[str, str]:
 
 
 def _card(renderer: str) -> Callable[[object], str]:
-    found: Callable[[object], str] = getattr(import_module("coeflab.report.notebook"), renderer)
+    found: Callable[[object], str] = getattr(import_module("coeflab.report.notebook"), f"{renderer}_card")
     return found
 
 

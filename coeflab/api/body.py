@@ -19,6 +19,7 @@ from coeflab.core.errors import InputError, shown
 from coeflab.core.files import located
 from coeflab.core.keywords import all_spoken
 from coeflab.core.missed import suggesting
+from coeflab.core.texts import input_error
 from coeflab.law import added_mass as law
 from coeflab.law.symbols import COMPONENTS, MOTIONS
 from coeflab.law.water import FRESH_DENSITY
@@ -28,7 +29,7 @@ if TYPE_CHECKING:
     import pandas as pd
     from matplotlib.axes import Axes
 
-    from coeflab.bodies.simplify.simplified import Simplification
+    from coeflab.bodies.simplify.simplification import Simplification
 
 __all__ = ["AddedMass", "Body", "added_masses", "body_of", "finer", "near_walls", "read_body", "typed_body"]
 NOSE = "nose"
@@ -256,13 +257,13 @@ class Body(plain.Body):
         """
         if self.datum.id == datum:
             return self
-        if not isinstance(self.shape, TriangleMesh) or not self.datum.id.startswith("origin of ") or datum != NOSE:
-            bare = isinstance(self.shape, TriangleMesh) and self.datum.id.startswith("origin of ")
+        if not isinstance(self.shape, TriangleMesh) or not self.datum.is_of_file or datum != NOSE:
+            bare = isinstance(self.shape, TriangleMesh) and self.datum.is_of_file
             aft = f"{self.shape.length / 2.0:.4g} m" if bare and self.shape and datum in MIDDLE else "X m"
-            raise InputError(
-                f"{self.name}, whose places count from {shown(self.datum.id)}",
-                f"places from the nose: a mesh names no {datum}" if bare else f"{datum} as datum under [body] of its body.toml",
-                column="datum", advice=f'about="nose, {aft} aft" of the tables; read_body(...).counted_from("nose") of the body.' if bare else "",
+            raise input_error(
+                "front_door.whose_places_count", column="datum", name=self.name, id=shown(self.datum.id),
+                expected=f"places from the nose: a mesh names no {datum}" if bare else f"{datum} as datum under [body] of its body.toml",
+                advice=f'about="nose, {aft} aft" of the tables; read_body(...).counted_from("nose") of the body.' if bare else '',
             )  # fmt: skip
         fore = np.array([float(self.shape.vertices[:, 0].max()), 0.0, 0.0])
         shape = replace(self.shape, vertices=self.shape.vertices - fore)

@@ -18,8 +18,9 @@ from coeflab.core.types import in_angles
 from coeflab.motion.behaviour import Behaviour
 from coeflab.motion.behaviour import behaviour as of_both
 from coeflab.vehicle import comparison as plain
-from coeflab.vehicle.comparison import ROUNDING, Verdict
+from coeflab.vehicle.comparison import ROUNDING
 from coeflab.vehicle.parameter_file import ParameterFile
+from coeflab.vehicle.shared_tables import Verdict
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -81,7 +82,7 @@ class Comparison(plain.Comparison):
         >>> cf.compare("remus100", "remus100").summary().headers[0]
         ''
         """
-        from coeflab.report.tables.models import coefficients, comparable, differ
+        from coeflab.report.tables.compared_files import coefficients, comparable, differ
 
         every = coefficients(self)
         return every if wide else comparable(every, differ(self))

@@ -21,6 +21,7 @@ from coeflab.core.files import shipped, typed
 from coeflab.core.finding import Finding, Severity
 from coeflab.core.machine import one_thread
 from coeflab.core.missed import suggesting, was_method
+from coeflab.core.texts import input_error
 from coeflab.core.types import in_angles
 from coeflab.law.coefficient import Coefficient
 from coeflab.law.symbols import COMPONENTS, primed
@@ -220,9 +221,9 @@ def _of_one_vehicle(source: Any) -> plain_study.Study:
             return _of_one_vehicle(carried_out(plan))
     if len(files) == 1:
         return study
-    raise InputError(
-        f"a plan of {len(files)} vehicles: {', '.join(files)}", "a plan of one vehicle", column="source",
-        advice=f"Ask of one campaign: {', '.join(dict.fromkeys(campaigns))}. Or of a parameter file, with the option table for its rows.",
+    raise input_error(
+        "front_door.plan_vehicles", column="source", count_of_files=len(files), files=", ".join(files),
+        fromkeys=", ".join(dict.fromkeys(campaigns)),
     )  # fmt: skip
 
 
@@ -268,10 +269,7 @@ def _wanted(
     name = next((index for index in INDICES if index.casefold() == name.casefold()), name)
     if name in INDICES or name[:1] not in COMPONENTS or not name.endswith("'"):
         if parameters is None:
-            raise InputError(
-                f"{name} of what has no mass", "a parameter file", column="--for",
-                advice="coeflab vehicle BODY --mass KG, or coeflab merge, writes one.",
-            )  # fmt: skip
+            raise input_error("front_door.what_has_mass", column="--for", name=name)
         if name in INDICES:
             return plain_tests.of_index(parameters, name)
         return plain_tests.of_manoeuvre(parameters, name, Question(manoeuvre, options, members=MEMBERS))

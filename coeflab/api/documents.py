@@ -11,8 +11,9 @@ from coeflab.core.errors import InputError, shown
 from coeflab.core.files import shipped, typed
 from coeflab.core.machine import one_thread
 from coeflab.core.provenance import InputFile, sha256_of
+from coeflab.core.texts import input_error
 from coeflab.core.types import brief
-from coeflab.formats.exporting import parameter_files_rendered
+from coeflab.formats.export import parameter_files_rendered
 from coeflab.report import content
 from coeflab.report.acceptance import Acceptance, acceptance_csv
 from coeflab.report.document import Document, Section
@@ -199,10 +200,7 @@ def _meant(study: str) -> Plan | str:
     if path.exists() and study not in validations():
         if plan_at(path).is_file():
             return read_plan(plan_at(path))
-        raise InputError(
-            f"{shown(study, 300)}, a folder without {PLAN} and campaign.toml",
-            f"a {PLAN}, a folder with one, a campaign or a validation",
-        )
+        raise input_error("front_door.folder_without_campaign", study=shown(study, 300), plan=PLAN)
     if study not in validations():
         campaign = shipped("cfd_data") / study / "campaign.toml"
         if not campaign.is_file():

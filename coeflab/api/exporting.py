@@ -8,10 +8,12 @@ from pathlib import Path
 from coeflab.api.parameters import HasParameters, parameters_of
 from coeflab.core.errors import InputError, shown
 from coeflab.core.files import write_all
+from coeflab.core.texts import input_error
 from coeflab.formats import EXPORTERS, loss_tables
-from coeflab.formats.export import Export, Kind
-from coeflab.formats.exporting import export as rendered
+from coeflab.formats.export import Export
+from coeflab.formats.export import export as rendered
 from coeflab.formats.lacking_law import without_law
+from coeflab.formats.missing_parts import Kind
 from coeflab.vehicle.parameter_file import ParameterFile
 
 __all__ = ["Export", "ParameterFile", "export", "loss_tables", "refusal", "require_targets", "without_law"]
@@ -85,10 +87,10 @@ def refusal(
     """
     loss = result.loss
     losses = () if loss is None else loss.lost
-    missing = any(x.kind is Kind.MISSING and "added mass" in x.what for x in losses)
-    return InputError(
-        f"{place}a target that loses part of {shown(parameters.name)}: {'' if loss is None else loss_tables.in_short(loss)}", expected,
-        advice=advice if missing else "",
+    missing = parameters.added_mass is None and any(x.kind is Kind.MISSING for x in losses)
+    return input_error(
+        "front_door.target_loses_part", place=place, name=shown(parameters.name),
+        value="" if loss is None else loss_tables.in_short(loss), expected=expected, advice=advice if missing else "",
     )  # fmt: skip
 
 

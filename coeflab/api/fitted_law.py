@@ -10,6 +10,7 @@ import numpy as np
 from coeflab.api.questions import si
 from coeflab.core.errors import InputError, shown
 from coeflab.core.missed import suggesting
+from coeflab.core.texts import input_error
 from coeflab.core.types import in_angles
 from coeflab.law.domain import Extrapolation
 from coeflab.law.symbols import CONTROLS
@@ -120,9 +121,7 @@ class FittedLaw:
                 f"{v} {_words(low, v)} to {_words(high, v)}"
                 for v, low, high in zip(domain.variables, domain.low, domain.high, strict=True)
             )
-            raise InputError(
-                at, f"within the data, {data}", column=self.response, advice="Beyond them: extrapolate=True."
-            )
+            raise input_error("front_door.within_data", column=self.response, found=at, data=data)
         return Evaluated(float(value[0]), float(u95[0])) if single else Evaluated(value, u95)
 
     def frame(self) -> pd.DataFrame:

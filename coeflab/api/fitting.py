@@ -14,8 +14,9 @@ from coeflab.api.reading import read_tables
 from coeflab.api.result import Result
 from coeflab.core.errors import InputError
 from coeflab.core.machine import one_thread
+from coeflab.core.texts import input_error
 from coeflab.fits import FITS, JOINT, USUAL
-from coeflab.fits.joint.rows import one_length
+from coeflab.fits.joint.one_point import one_length
 from coeflab.law.scaling import Scaling, require_hull
 from coeflab.study.fitting import fitted, refuse_empty, rejoined
 from coeflab.tables.force_table import ForceTable
@@ -91,10 +92,7 @@ def fit(
     read = _distinct(read)
     names = [t.name for t in read]
     if twice := next((n for n in names if names.count(n) > 1), None):
-        raise InputError(
-            f"the table {twice} twice", "every table once", column="tables",
-            advice="A row that counts twice makes every interval too narrow. Tables that differ need a name= each.",
-        )  # fmt: skip
+        raise input_error("front_door.table_twice", column="tables", twice=twice)
     if include_uncertain:
         read = [t.with_uncertain_cells() for t in read]
     by = by or (JOINT if "terms" in options else _suited(every))

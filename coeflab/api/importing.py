@@ -212,7 +212,7 @@ class Draft:
             mine = own(self.settings, part, self.parts)
             sizes += [f"warning, {k}: {why}" for k in mine if (why := doubtful_setting(part.raw, mine, k))]
         sizes += [f"warning, {POINT_OF}: {why}" for why in [self._beyond_ends()] if why]
-        shows = [e.text for found in self.founds for e in found.shows if e.text.startswith("warning")]
+        shows = [e.text for found in self.founds for e in found.shows if e.warns]
         same = [
             f"warning: {' and '.join(names)} have the same columns. Parts of one sweep are joined by --option {JOIN}=yes; tests of "
             "another body are a campaign of their own: name one by --option sheet= or files="

@@ -6,10 +6,11 @@ import difflib
 from typing import Any
 
 from coeflab.core.declarations import Declaration
-from coeflab.core.errors import InputError, shown
+from coeflab.core.errors import shown
 from coeflab.core.options import described
 from coeflab.core.registry import Registry, registries, registry_of
 from coeflab.core.table import Table
+from coeflab.core.texts import input_error
 
 __all__ = ["chosen", "listed", "options_of", "plugins", "registry_of"]
 
@@ -99,7 +100,5 @@ def chosen(name: str) -> tuple[list[tuple[Registry[Any], str]], list[tuple[Regis
     if not out and not broken and name not in kinds:
         near = difflib.get_close_matches(name, [*kinds, *(p for _, p in every)], n=1)
         hint = f"Did you mean {near[0]}? " if near else ""
-        raise InputError(
-            shown(name), f"a plugin, or one of {', '.join(kinds)}", advice=f"{hint}`coeflab formats` lists all."
-        )
+        raise input_error("front_door.plugin_one", found=shown(name), kinds=", ".join(kinds), hint=hint)
     return out, broken

@@ -203,7 +203,9 @@ def simulate(
     step, record : float, optional
         Of rk4, and between rows, s.
     integrator : {"adaptive", "rk4"}, optional
+        Adaptive unless given.
     simulator : str
+        Name from ``cf.plugins("simulators")``; draws need rigid_body.
     tables : bool
         Fitted tables come before derivatives.
     accelerations : {"measured", "computed"}
@@ -219,7 +221,7 @@ def simulate(
     Raises
     ------
     InputError
-        An option that the manoeuvre has not or cannot take, a motion that the file does not know; draws of a file without U95.
+        An option that the manoeuvre lacks or cannot take, a motion unknown to the file; draws of a file without U95.
 
     Examples
     --------
@@ -236,11 +238,11 @@ def simulate(
     found = carried_out(
         parameters,
         manoeuvre,
-        options,
-        how,
-        free,
-        hold,
-        simulator,
+        options=options,
+        integration=how,
+        free=free,
+        hold=hold,
+        simulator=simulator,
         tables=tables,
         accelerations=accelerations,
     )

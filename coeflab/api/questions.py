@@ -11,6 +11,7 @@ import numpy as np
 
 from coeflab.core.errors import InputError, shown, together
 from coeflab.core.keywords import option
+from coeflab.core.texts import input_error
 from coeflab.core.types import Array
 from coeflab.core.units import with_unit
 from coeflab.tables.form import Group, Line
@@ -180,11 +181,8 @@ def _asked(lines: Sequence[Line], source: str, parts: Sequence[str]) -> Iterator
             yield InputError(f"no option {one.key}", offered, file=source, column="options")
         elif keyword is None:
             offered = f'columns={{"{one.key}": "{one.value or "..."}"}}'
-            yield InputError(
-                f"the column {one.key} of which nobody said what it is",
-                f"{offered}: {why}",
-                file=source,
-                column="columns",
+            yield input_error(
+                "front_door.column_nobody_said", source, column="columns", key_2=one.key, offered=offered, why=why
             )
         else:
             yield InputError(
@@ -231,10 +229,7 @@ def si(value: float | str, dimension: str, keyword: str) -> float:
     except InputError as why:
         raise type(why)(why.found, why.expected, column=option(keyword), advice=why.advice) from None
     if dimension == "angle" and not typed and abs(found) > math.pi:
-        raise InputError(
-            f"{found:g} rad, beyond half a turn", "an angle in rad, or with its unit", column=option(keyword),
-            advice=f'Degrees are written "{found:g} deg".',
-        )  # fmt: skip
+        raise input_error("front_door.rad_beyond_half", column=option(keyword), found=found)
     return found
 
 

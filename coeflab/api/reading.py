@@ -14,6 +14,7 @@ from coeflab.api.table import OscillatingTable, Table
 from coeflab.core.errors import InputError, shown, together
 from coeflab.core.files import located
 from coeflab.core.keywords import all_spoken
+from coeflab.core.texts import input_error
 from coeflab.core.wording import identifier
 from coeflab.tables import reading
 from coeflab.tables.campaign import FILE
@@ -175,9 +176,8 @@ def read_table(
         return chosen[0]
     if len(found) > 1:
         names = ", ".join(t.name.rpartition("/")[2] for t in found)
-        raise InputError(
-            f"{len(found)} tables", f"table= one of {names}", file=_called(source), column="table",
-            advice="read_tables gives all of them.",
+        raise input_error(
+            "front_door.table_one", _called(source), column="table", count_of_found=len(found), names=names,
         )  # fmt: skip
     return found[0]
 
@@ -240,11 +240,7 @@ def tables_from(
         raw = raw_of_columns(source, f"<{name or 'table'}>")
         return _filled_in((Part("", raw, ARRAYS, {}),), (), keywords, columns, identifier(name or "table"), accept)
     if not isinstance(source, str | Path):
-        raise InputError(
-            f"a {type(source).__name__}",
-            "a path, the name of a shipped campaign, a DataFrame or a dict of arrays",
-            column="source",
-        )
+        raise input_error("front_door.path_name_shipped", column="source", __name__=type(source).__name__)
     path = located(source, "cfd_data")
     if _is_campaign(path) and not importer:
         _require_nothing(stated, columns, f"{path}, whose {FILE} says everything")
@@ -325,8 +321,9 @@ def _keywords(keywords: Mapping[str, Any]) -> dict[str, Any]:
         keyword = {"axes": "frame", "unit": "units"}.get(given, given)
         if keyword not in KEYS:
             near = SYMBOLS.get(given) or next(iter(get_close_matches(given, KEYS, 1)), "")
-            complaints.append(InputError(
-                f"the keyword {given}", f"one of {', '.join(KEYS)}", column=given, advice=f"Did you mean {near}?" if near else "",
+            complaints.append(input_error(
+                "front_door.unknown_keyword", column=given, given=given, keys=", ".join(KEYS),
+                advice=f"Did you mean {near}?" if near else "",
             ))  # fmt: skip
         elif out.get(keyword) is None:
             out[keyword] = value

@@ -13,7 +13,7 @@ from coeflab.core.finding import Finding, Severity
 from coeflab.core.missed import suggesting, was_method
 from coeflab.core.table import Table as Shown
 from coeflab.core.table import percent, with_u95
-from coeflab.core.texts import remark
+from coeflab.core.texts import input_error, remark
 from coeflab.core.types import in_angles
 from coeflab.fits.joint.moving import LEFT_OUT
 from coeflab.fits.results.fit_result import covariance_of
@@ -122,9 +122,9 @@ class Result(Mapping[str, Coefficient]):
         own = [f for f in own if f.coefficients[symbol].value is not None] or own[:1]
         if len(own) > 1:
             names = [f.campaign for f in own]
-            raise InputError(
-                f"{primed(symbol.removesuffix(chr(39)))} of {len(own)} campaigns", f"one of {', '.join(names)}", column=symbol,
-                advice=f'result.of("{names[0]}")["{symbol}"]; cf.fit(..., "manoeuvring_model") fits them jointly.',
+            raise input_error(
+                "front_door.result_cf_fit", column=symbol, removesuffix=primed(symbol.removesuffix(chr(39))),
+                count_of_own=len(own), names=", ".join(names), names_2=names[0], symbol=symbol,
             )  # fmt: skip
         if not own:
             law = f'; a law is result.laws["{symbol}"]' if symbol in self.laws else ""
@@ -334,14 +334,14 @@ class Result(Mapping[str, Coefficient]):
                 if s.symbol == name:
                     return s
         known = [primed(s.symbol) for f in self.fits for s in f.sweeps]
-        raise InputError(
-            f"no sweep of {shown(symbol)}", f"one of {', '.join(known)}" if known else "a fit of slopes, such as slope_at_origin",
-            column="symbol",
+        raise input_error(
+            "front_door.no_such_coefficient", column="symbol", symbol=shown(symbol),
+            expected=f"one of {', '.join(known)}" if known else 'a fit of slopes, such as slope_at_origin',
         )  # fmt: skip
 
     def _plot_tied(self, symbol: str, ax: Axes | None) -> Axes | None:
         """The law of a term that is tied to a slope, over the points of that slope; None of any other coefficient."""
-        from coeflab.law.terms import read_term
+        from coeflab.law.named_terms import read_term
         from coeflab.report.plots import plot_tied
 
         c = self[symbol]

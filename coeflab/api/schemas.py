@@ -52,7 +52,7 @@ def _declaration(kind: str) -> Any:
     from coeflab.bodies.readers import BODIES
     from coeflab.study.plan import PlanFile
     from coeflab.tables.campaign import CampaignFile
-    from coeflab.vehicle.reference import ReferenceFile
+    from coeflab.vehicle.published_values import ReferenceFile
 
     if kind == "body":
         return reduce(or_, (m.File for m in map(BODIES.load, BODIES.names()) if hasattr(m, "File")))

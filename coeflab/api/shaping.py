@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 from coeflab.api.merging import Merge, merge
 from coeflab.bodies.body import Body
 from coeflab.core.types import brief
-from coeflab.formats.exporting import exports_of, placed, refuse_unknown
+from coeflab.formats.export import exports_of, placed, refuse_unknown
 from coeflab.study.checking import checked
 from coeflab.study.estimated_vehicle import NOTHING, asked, campaigns_named, completed_by_hand, from_shape
 from coeflab.study.study import Plan, Study

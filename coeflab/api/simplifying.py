@@ -7,8 +7,8 @@ from collections.abc import Sequence
 from coeflab.bodies.added_masses import against_mesh
 from coeflab.bodies.body import Body
 from coeflab.bodies.simplify import simplify as parting
-from coeflab.bodies.simplify.simplified import MESH, Simplification
-from coeflab.bodies.simplify.simplify import NamedBox, parse_box, read_boxes
+from coeflab.bodies.simplify.boxes import NamedBox, parse_box, read_boxes
+from coeflab.bodies.simplify.simplification import MESH, Simplification
 from coeflab.core.wording import Verbatim
 
 __all__ = ["MESH", "NamedBox", "Simplification", "files", "parse_box", "read_boxes", "simplify"]

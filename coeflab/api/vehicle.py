@@ -35,8 +35,9 @@ from coeflab.law.symbols import primed
 from coeflab.law.water import conditions_of
 from coeflab.study.estimated_vehicle import estimated
 from coeflab.study.study import Plan
-from coeflab.vehicle.assemble import PlannedParameterFile, assemble
+from coeflab.vehicle.assemble import assemble
 from coeflab.vehicle.from_shape import Stated
+from coeflab.vehicle.gathered import PlannedParameterFile
 from coeflab.vehicle.merge import merged
 from coeflab.vehicle.own_numbers import OwnNumber, as_file, own_numbers, typed_surfaces, typed_thrusters
 from coeflab.vehicle.parameter_file import ParameterFile
@@ -470,7 +471,7 @@ def _read(numbers: Mapping[str, str | float]) -> tuple[OwnNumber, ...]:
 def _of_datum(hull: Body, result: Result) -> Body:
     """The body by the datum of the fits, where it is a bare mesh and they count from its nose."""
     datum = next((f.coefficients.datum.id for f in result.fits if f.coefficients.datum != ANYWHERE), hull.datum.id)
-    bare = hull.datum.id.startswith("origin of ") and hull.datum.id != datum
+    bare = hull.datum.is_of_file and hull.datum.id != datum
     return hull.counted_from(datum) if bare else hull
 
 

@@ -15,7 +15,7 @@ from coeflab.arm.control import Controller
 from coeflab.arm.manoeuvres import PHASES, ordered
 from coeflab.arm.readers.arm import File
 from coeflab.arm.thrusters import Thruster, TorqueThruster, VoltageThruster, thruster_matrix, uncontrolled_directions
-from coeflab.bodies.closed_forms import ellipsoid_added_mass
+from coeflab.bodies.closed_forms.ellipsoid import ellipsoid_added_mass
 from coeflab.core import declarations as takes
 from coeflab.core.errors import shown
 from coeflab.core.text.toml import read_toml

@@ -9,13 +9,15 @@ from typing import Annotated, Any, NamedTuple
 import numpy as np
 
 from coeflab.bodies.body_file import InertiaMatrix
-from coeflab.bodies.closed_forms import MeridianIntegrals, cylinder_with_ends, strip_added_mass
+from coeflab.bodies.closed_forms.parts import cylinder_with_ends
+from coeflab.bodies.closed_forms.revolution import MeridianIntegrals, strip_added_mass
 from coeflab.bodies.pieces import Direction
 from coeflab.core import declarations as takes
 from coeflab.core.errors import InputError, shown
+from coeflab.core.texts import input_error
 from coeflab.core.types import Array
 from coeflab.core.units import STANDARD_GRAVITY, with_unit
-from coeflab.law.added_mass import definiteness
+from coeflab.law.definiteness import definiteness
 from coeflab.law.rigid_body import inertia_doubt
 from coeflab.law.transforms import about_axis, moved, rotation, turned
 from coeflab.law.water import ROUND_DENSITY
@@ -85,10 +87,7 @@ def _require_inertia(mass: float, inertia: Array) -> None:
 def _require_added_mass(matrix: Array | None) -> None:
     if matrix is not None and np.any(matrix) and not definiteness(matrix).holds:
         smallest = float(np.linalg.eigvalsh((matrix + matrix.T) / 2.0)[0])
-        raise InputError(
-            f"an added mass of smallest eigenvalue {smallest:g}", "a symmetric matrix without negative eigenvalues",
-            column="added_mass", advice="Positive entries resist acceleration; the URV paper prints its entries negative.",
-        )  # fmt: skip
+        raise input_error("arm.added_mass_smallest", column="added_mass", smallest=smallest)
 
 
 def _one_each(what: str, units: str, example: str) -> takes.Takes:
@@ -235,17 +234,9 @@ class LinkKeys(takes.Declaration):
         low, high, home, fastest, strongest = self.range
         f, unit = (180.0 / np.pi, "deg") if self.joint == "revolute" else (1.0, "m")
         if not low < high:
-            raise InputError(
-                f"low {f * low:.6g}, high {f * high:.6g} {unit}",
-                "low below high",
-                column="low",
-                advice="Exchange them.",
-            )
+            raise input_error("arm.low_high", column="low", f=f * low, f_2=f * high, unit=unit)
         if not low <= home <= high:
-            raise InputError(
-                f"{f * home:.6g} {unit}", f"{f * low:.6g} to {f * high:.6g} {unit}, low to high", column="home",
-                advice="Move home, or a limit; without home a joint begins at 0.",
-            )  # fmt: skip
+            raise input_error("arm.low_high_2", column="home", f=f * home, unit=unit, f_2=f * low, f_3=f * high)
         for key, value in (("fastest", fastest), ("strongest", strongest)):
             if not value > 0.0:
                 raise InputError(f"{value:g}", "a value above zero", column=key)

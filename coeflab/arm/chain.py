@@ -21,9 +21,10 @@ from numpy.typing import NDArray
 
 from coeflab.arm.thrusters import Thruster
 from coeflab.core.errors import InputError
+from coeflab.core.texts import input_error
 from coeflab.core.types import Array, brief, locked, locking
 from coeflab.core.units import STANDARD_GRAVITY
-from coeflab.law.added_mass import definiteness
+from coeflab.law.definiteness import definiteness
 from coeflab.law.rigid_body import inertia_doubt, rigid_body_inertia
 from coeflab.law.water import ROUND_DENSITY
 
@@ -202,10 +203,7 @@ def _lock(body: Link | Base) -> None:
         raise InputError(doubt, "a symmetric inertia about the centre of mass that a body can have", column="inertia")
     if np.any(body.added_mass) and not definiteness(body.added_mass).holds:
         smallest = float(np.linalg.eigvalsh((body.added_mass + body.added_mass.T) / 2.0)[0])
-        raise InputError(
-            f"an added mass of smallest eigenvalue {smallest:g}", "a symmetric matrix without negative eigenvalues",
-            column="added_mass", advice="M_A is positive; the URV paper prints its entries negative (erratum 2).",
-        )  # fmt: skip
+        raise input_error("arm.added_mass_smallest_2", column="added_mass", smallest=smallest)
 
 
 @dataclass(frozen=True, eq=False)

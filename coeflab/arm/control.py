@@ -238,7 +238,7 @@ class _Loop:
     ) -> None:
         self.chain, self.controller, self.track, self.station, self.flow = chain, controller, track, station, flow
         self.equations: Equations = equations_of(chain)
-        self.inverse = thrusters.require_all_directions(chain.thrusters)
+        self.inverse = thrusters.thrust_allocation(chain.thrusters)
         self.matrix = thrusters.thruster_matrix(chain.thrusters)
         self.size = 13 + 2 * chain.count
         self.at_start = kane.mass_matrix(chain, start[7 : 7 + chain.count])

@@ -21,21 +21,24 @@ from coeflab.arm import kane
 from coeflab.arm.chain import Chain, Joint
 from coeflab.arm.control import ControlledRun, gain_of, most_thrust
 from coeflab.bodies.body import Body
-from coeflab.bodies.mesh import solids as silhouette
+from coeflab.bodies.mesh import silhouettes
 from coeflab.bodies.shape import Cylinder, Ellipsoid, Part, Parts
-from coeflab.core.errors import InputError
 from coeflab.core.text.bounded import own_text
+from coeflab.core.texts import input_error
 from coeflab.core.types import Array, brief, locking
 from coeflab.motion.dynamics import rotations
 from coeflab.motion.trajectory import Trajectory
 from coeflab.report.document import Figure
-from coeflab.report.figures import body_scene
-from coeflab.report.figures.body import OBLIQUE, Sheet, View, outline_path
+from coeflab.report.figures import form_facets, part_pictures
+from coeflab.report.figures.artists import text_width
+from coeflab.report.figures.body import OBLIQUE
+from coeflab.report.figures.body_view import Sheet, View, outline_path
 from coeflab.report.figures.laws import Plot, Trace, laws_figure
 from coeflab.report.figures.palette import COLOURS
 from coeflab.report.figures.panel import WIDTH, drawing
 from coeflab.report.figures.series import STYLES
-from coeflab.report.figures.svg import settings, sheet, svg_text, text_width
+from coeflab.report.figures.svg import settings, svg_text
+from coeflab.report.figures.svg_file import sheet
 
 TEMPLATE = Path(__file__).with_name("motion.html")
 ALONG, AROUND = 10, 20  # facets of the hull that the page draws
@@ -79,9 +82,7 @@ def hull_of(body: Body) -> Array:
     """(3,) semi-axes, m, of the hull of a body whose reader is ``arm``."""
     hull = body.shape.parts[0].form if isinstance(body.shape, Parts) else None
     if not isinstance(hull, Ellipsoid):
-        raise InputError(
-            f"{body.name}, without an ellipsoid for a hull", "the body of a vehicle with an arm", column="reader"
-        )
+        raise input_error("arm.without_ellipsoid_hull", column="reader", name=body.name)
     return np.asarray(hull.axes)
 
 
@@ -142,15 +143,15 @@ def _in_place(drawn: Sheet, shape: Parts) -> None:
     """The hull, and of every cylinder what neither lies in it nor behind it; cylinders nearer to the viewer later."""
     hull, *cylinders = shape.parts
     toward = drawn.view.axes[2]
-    drawn.part(body_scene.part_facets(hull), body_scene.COLOUR_OF["ellipsoid"], False, True)
+    drawn.part(part_pictures.part_facets(hull), part_pictures.COLOUR_OF["ellipsoid"], False, True)
     for part in sorted(cylinders, key=lambda p: round(float(p.centre @ toward), 9)):
         form = part.form
         if not isinstance(form, Cylinder):
             continue
-        facets = body_scene.cut_cylinder_facets(form.radius, form.length, SLICES) @ part.rotation.T + part.centre
+        facets = form_facets.cut_cylinder_facets(form.radius, form.length, SLICES) @ part.rotation.T + part.centre
         seen = facets[in_sight(facets.mean(axis=1), hull, toward)]
         if len(seen):
-            drawn.part(seen, body_scene.COLOUR_OF["cylinder"], False, False)
+            drawn.part(seen, part_pictures.COLOUR_OF["cylinder"], False, False)
 
 
 def in_sight(points: Array, hull: Part, toward: Array) -> NDArray[np.bool_]:
@@ -268,7 +269,7 @@ def _pale(drawn: Sheet, shape: Parts) -> None:
     """Parts as outlines with a pale fill, so that what is written over them can be read."""
     for part in shape.parts:
         path = outline_path(
-            silhouette.convex_outline(body_scene.part_facets(part).reshape(-1, 3), drawn.frame), drawn.move
+            silhouettes.convex_outline(part_pictures.part_facets(part).reshape(-1, 3), drawn.frame), drawn.move
         )
         if path is not None:
             drawn.axes.add_patch(PathPatch(path, facecolor=COLOURS["band"], edgecolor="none", alpha=0.25, zorder=2))
@@ -286,7 +287,7 @@ def _corners(shape: Parts) -> Array:
             size = 2.0 * np.asarray(form.axes)
         else:
             size = np.ones(3)
-        out.append(body_scene.box_facets(size).reshape(-1, 3) @ part.rotation.T + part.centre)
+        out.append(form_facets.box_facets(size).reshape(-1, 3) @ part.rotation.T + part.centre)
     return np.vstack(out)
 
 
@@ -492,7 +493,7 @@ def animation(motion: ArmMotion, title: str, description: str) -> bytes:
             {
                 "colour": COLOURS["c" if k == 0 else "a"],
                 "facets": own.round(4).tolist(),
-                "normals": body_scene.normals(own).round(3).tolist(),
+                "normals": form_facets.normals(own).round(3).tolist(),
             }
         )
     poses = []
@@ -520,9 +521,9 @@ def animation(motion: ArmMotion, title: str, description: str) -> bytes:
 def _tube(part: Part) -> Array:
     form = part.form
     return (
-        body_scene.cylinder_facets(form.radius, form.length)
+        form_facets.cylinder_facets(form.radius, form.length)
         if isinstance(form, Cylinder)
-        else body_scene.box_facets(np.ones(3))
+        else form_facets.box_facets(np.ones(3))
     )
 
 

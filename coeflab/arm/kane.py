@@ -281,11 +281,6 @@ def displacement_rates(count: int, state: Array) -> Array:
     return np.array([*kinematics(axes_in_earth(*attitude), *attitude, *speeds[:6])[:7], *speeds[6:]])
 
 
-def kinetic_energy(chain: Chain, q: Array, speeds: Array) -> float:
-    """Of the bodies and of the water that moves with them, J."""
-    return float(0.5 * speeds @ mass_matrix(chain, q) @ speeds)
-
-
 def end_in_earth(chain: Chain, state: Array) -> Array:
     """(3,) end effector, NED, m: equations 26 and 27, with diag(1, -1, -1) between NED and frame 0 (erratum 7)."""
     at = pose(chain, state[7 : 7 + chain.count])

@@ -13,6 +13,7 @@ from coeflab.arm.chain import Chain
 from coeflab.arm.readers.arm import File
 from coeflab.core.errors import InputError, shown
 from coeflab.core.options import RAD_AT_MOST, TURNING, NoOptions, measured, parse_options, text
+from coeflab.core.texts import input_error
 from coeflab.core.types import Array
 from coeflab.core.units import with_unit
 from coeflab.motion.manoeuvre import Manoeuvre, Phase
@@ -178,9 +179,7 @@ def _ways(name: str, o: Any, file: File, chain: Chain) -> list[tuple[str, dict[s
     else:
         ways = [(p.name, _to(chain, p.end), f"phase[{i}]") for i, p in enumerate(file.phase) if p.end is not None]
         if not ways:
-            raise InputError(
-                "no place to go to: no [[phase]] has an end", "x,y,z in m, FRD, from the datum", column="--end"
-            )
+            raise input_error("arm.place_go_phase", column="--end")
     return [way for k, way in enumerate(ways) if k == 0 or way[1] != ways[k - 1][1]]
 
 
@@ -198,10 +197,7 @@ def _listed(option: str, given: str, dimensions: Sequence[str]) -> tuple[float, 
         except ValueError:
             value = word.strip()
         if dimension == "rate" and isinstance(value, float) and 0.0 < abs(value) < RAD_AT_MOST:
-            raise InputError(
-                f"{value:g}, a rate without a unit", f'deg/s, at least {RAD_AT_MOST:g}, or a unit: "{value:g} deg/s"',
-                column=f"--{option}", advice=f'In radians it is written "{value:g} rad/s".',
-            )  # fmt: skip
+            raise input_error("arm.rate_without_unit", column=f"--{option}", value=value, rad_at_most=RAD_AT_MOST)
         if dimension in TURNING and isinstance(value, float):
             value = f"{value!r} {TURNING[dimension]}"
         try:

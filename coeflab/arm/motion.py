@@ -20,6 +20,7 @@ from coeflab.arm.chain import STILL, Chain, Flow
 from coeflab.arm.thrusters import thruster_forces, thruster_matrix, thruster_rates
 from coeflab.core.errors import InputError
 from coeflab.core.machine import compiles
+from coeflab.core.texts import input_error
 from coeflab.core.types import Array, brief, locked
 from coeflab.motion.trajectory import Ended
 
@@ -350,10 +351,9 @@ def track_to(
     for joint, value in zip(chain.joints, to, strict=True):
         if not joint.low <= value <= joint.high:
             factor, unit = (180.0 / np.pi, "deg") if joint.turns else (1.0, "m")
-            raise InputError(
-                f"{factor * value:.6g} {unit}",
-                f"{factor * joint.low:.6g} to {factor * joint.high:.6g} {unit}, the limits of joint {joint.name}",
-                column="joints",
+            raise input_error(
+                "arm.limits_joint", column="joints", factor=factor * value, unit=unit, factor_2=factor * joint.low,
+                factor_3=factor * joint.high, name=joint.name,
             )  # fmt: skip
     return Track(begins, ends, np.array([q, to]), np.zeros(chain.count) if rates is None else rates)
 
@@ -394,11 +394,9 @@ def track_of_end(
         if short or np.any(here < low) or np.any(here > high):
             beyond = [j.name for j, q_j in zip(chain.joints, here, strict=True) if not j.low <= q_j <= j.high]
             why = "no joint positions put it there" if short else f"{' and '.join(beyond)} would pass a limit"
-            raise InputError(
-                f"{_place(chain, to)}: on the straight line from {_place(chain, start)} the end effector does not get as far as "
-                f"{_place(chain, wanted)}, where {why}",
-                "a place that a straight line reaches within the joints' limits, [x, y, z], m, FRD, from the datum", column="end",
-                advice="Choose a nearer place, or go there by joints.",
+            raise input_error(
+                "arm.straight_line_end", column="end", place=_place(chain, to), place_2=_place(chain, start),
+                place_3=_place(chain, wanted), why=why,
             )  # fmt: skip
         rows.append(here)
     return Track(begins, ends, np.array(rows))

@@ -8,14 +8,15 @@ from dataclasses import dataclass
 import numpy as np
 
 from coeflab.core.errors import InputError
+from coeflab.core.texts import input_error
 from coeflab.core.types import Array, brief, locked
 
 DIRECTIONS = ("surge", "sway", "heave", "roll", "pitch", "yaw")
 LETTERS = "XYZKMN"
-WEAK = 1e-9
+SINGULAR = 1e-9  # relative: of the largest singular value, and of a pivot of scaled rows
 BLADE = 0.7  # of the radius, where the blade is taken
 HALVINGS = 200
-WITHOUT = "A free or a held vehicle needs none."
+NO_THRUSTERS_NEEDED = "A free or a held vehicle needs none."
 
 
 @brief
@@ -68,7 +69,7 @@ class TorqueThruster:
 class VoltageThruster:
     """Thruster of two states with slip, after Healey, Rock, Cody, Miles & Brown (1994): motor, blade and column of water.
 
-    The URV paper prints the two states and names that work; these functions of them are from memory of it, no copy was read.
+    The URV paper prints the two states and names that work, which was not at hand: the functions of them are not checked against it.
 
     dOmega/dt = -k1 Omega + k2 V - kh Q; rho A l gamma dv_p/dt = T - rho A delta v_p |v_p|. Blades at 0.7 of the radius see
     U_t = 0.7 R Omega and v_p, at the angle theta = atan2(v_p, U_t) and an incidence pitch - theta; lift is C_L sin(2 incidence),
@@ -212,7 +213,7 @@ def uncontrolled_directions(matrix: Array) -> tuple[str, ...]:
     size = np.max(np.abs(matrix), axis=1, initial=0.0)
     scale = np.where(size > 0.0, size, 1.0)
     left, strength, _ = np.linalg.svd(matrix / scale[:, None])
-    rank = int(np.sum(strength > WEAK * max(float(np.max(strength, initial=0.0)), WEAK)))
+    rank = int(np.sum(strength > SINGULAR * max(float(np.max(strength, initial=0.0)), SINGULAR)))
     uncontrolled = left[:, rank:] / scale[:, None]
     out = []
     # Reduced to echelon form, so that a direction that is lost by itself stands by itself.
@@ -242,7 +243,7 @@ def _echelon(rows: Array) -> Array:
         if at == len(out):
             break
         best = at + int(np.argmax(np.abs(out[at:, column])))
-        if abs(out[best, column]) < WEAK:
+        if abs(out[best, column]) < SINGULAR:
             continue
         out[[at, best]] = out[[best, at]]
         out[at] /= out[at, column]
@@ -253,7 +254,7 @@ def _echelon(rows: Array) -> Array:
     return out
 
 
-def require_all_directions(thrusters: Sequence[Thruster]) -> Array:
+def thrust_allocation(thrusters: Sequence[Thruster]) -> Array:
     """Theta's pseudo-inverse, (k, 6): thrusts of least squares for a force and moment.
 
     Raises
@@ -262,14 +263,11 @@ def require_all_directions(thrusters: Sequence[Thruster]) -> Array:
         Thrusters that cannot make every force and moment, with those that are lost.
     """
     if not thrusters:
-        raise InputError(
-            "no thrusters", "thrusters that make every force and moment", column="thruster", advice=WITHOUT
-        )
+        raise input_error("arm.thrusters_make_every", column="thruster", advice=NO_THRUSTERS_NEEDED)
     matrix = thruster_matrix(thrusters)
     if uncontrolled := uncontrolled_directions(matrix):
-        raise InputError(
-            f"thrusters that make no {', no '.join(uncontrolled)}", "a thruster matrix of rank 6", column="thruster",
-            advice=f"Add or turn a thruster. {WITHOUT}",
+        raise input_error(
+            "arm.thrusters_make", column="thruster", uncontrolled=", no ".join(uncontrolled), without=NO_THRUSTERS_NEEDED,
         )  # fmt: skip
     return np.asarray(np.linalg.pinv(matrix))
 

@@ -15,12 +15,13 @@ from coeflab.bodies.shape import Agreement, Parts
 from coeflab.bodies.triangulation import Triangulation
 from coeflab.core.errors import InputError
 from coeflab.core.machine import one_thread
+from coeflab.core.texts import input_error
 from coeflab.law.added_mass import NearWall
 from coeflab.law.water import ROUND_DENSITY
 
 if TYPE_CHECKING:
     from coeflab.bodies.body import Body
-    from coeflab.bodies.simplify.simplified import Simplification
+    from coeflab.bodies.simplify.simplification import Simplification
     from coeflab.core.finding import Finding
     from coeflab.law.added_mass import AddedMass
 
@@ -75,9 +76,7 @@ def added_masses(
         No plugin has that name.
     """
     if not 0.0 < density <= DENSEST:
-        raise InputError(
-            f"a density of {density:g} kg/m^3", f"a value above zero, at most {DENSEST:g}", column="density"
-        )
+        raise input_error("bodies.density_kg", column="density", density=density, densest=DENSEST)
     shape = body.require_shape()
     if given and method == "all":
         raise InputError(f"options {', '.join(given)} for all methods", "one --method that they are for")
@@ -190,9 +189,7 @@ def near_walls(
         A density not above zero, no distance or one within the body, and what the method refuses.
     """
     if not 0.0 < density <= DENSEST:
-        raise InputError(
-            f"a density of {density:g} kg/m^3", f"a value above zero, at most {DENSEST:g}", column="density"
-        )
+        raise input_error("bodies.density_kg_2", column="density", density=density, densest=DENSEST)
     near = wall_sweep(body, density, wall, distances, given)
     far = ADDED_MASS.load("panel").added_mass(_original(body) or body, density, dict(given or {}))
     walls = tuple(NearWall(wall, d, n.matrix) for d, n in zip(sorted(set(distances)), near, strict=True))
@@ -247,9 +244,7 @@ def _require_solid(body: Body) -> None:
     """Refuse sheets of a mesh for methods that would leave them out."""
     shape = body.require_shape()
     if isinstance(shape, TriangleMesh) and len(shape.sheets):
-        raise InputError(
-            "a mesh with sheets of no thickness", "a closed surface", advice="The method panel takes sheets."
-        )
+        raise input_error("bodies.mesh_sheets_thickness")
 
 
 def _original(body: Body) -> Body | None:

@@ -8,7 +8,6 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -26,12 +25,10 @@ from coeflab.core.cards import html_by
 from coeflab.core.errors import InputError, shown
 from coeflab.core.finding import Finding
 from coeflab.core.provenance import InputFile, Source
+from coeflab.core.texts import input_error
 from coeflab.core.types import brief, in_angles, locked
 from coeflab.law.rigid_body import MassProperties
 from coeflab.law.scaling import Scaling
-
-if TYPE_CHECKING:
-    pass
 
 
 @brief
@@ -198,11 +195,7 @@ class Body:
             The body's file gives particulars only.
         """
         if self.shape is None:
-            raise InputError(
-                f"{self.name}, a body of particulars without a shape",
-                "a body with a shape",
-                advice="Give its body.toml parts ([[part]], reader primitives), or name another body.",
-            )
+            raise input_error("bodies.body_particulars_without", name=self.name)
         return self.shape
 
     def require(self, name: str) -> Configuration:

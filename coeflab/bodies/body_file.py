@@ -17,13 +17,14 @@ from coeflab.bodies.outline import Outline
 from coeflab.bodies.pieces import Control, ControlKeys, Piece
 from coeflab.bodies.recognition import outline_of
 from coeflab.bodies.shape import Shape
-from coeflab.bodies.thrusters import ThrusterKeys
+from coeflab.bodies.thruster_keys import ThrusterKeys
 from coeflab.core import declarations as takes
 from coeflab.core.axes import DatumKeys
 from coeflab.core.errors import InputError, shown
 from coeflab.core.finding import Finding, Severity
 from coeflab.core.provenance import InputFile, Source, sha256_of
 from coeflab.core.text.toml import read_toml
+from coeflab.core.texts import input_error
 from coeflab.core.types import Array
 from coeflab.law.rigid_body import MassProperties, about_another, inertia_doubt
 from coeflab.law.scaling import Scaling
@@ -336,8 +337,8 @@ class BodyFile(takes.Declaration):
             raise InputError("nothing", what, column=key, advice=f"Add {key}.")
         if self.prime is not None and not primed and (self.prime.density is not None or not self.reader):
             key = "prime.density" if self.reader else "prime"
-            raise InputError(
-                "a key without mass_prime", "one [[configuration]] at least with mass_prime", column=key,
+            raise input_error(
+                "bodies.key_without_mass", column=key,
                 advice="Delete density in [prime]." if self.reader else "Delete [prime].",
             )  # fmt: skip
         for i, one in enumerate(self.configuration):

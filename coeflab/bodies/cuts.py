@@ -13,8 +13,8 @@ from typing import Any
 import numpy as np
 
 from coeflab.bodies.mesh.mesh import TriangleMesh
-from coeflab.bodies.mesh.solids import polygons
-from coeflab.bodies.strips import contours
+from coeflab.bodies.mesh.silhouettes import polygons
+from coeflab.bodies.mesh_sections import contours
 from coeflab.core.errors import InputError
 from coeflab.core.types import Array
 
@@ -24,6 +24,10 @@ HOLLOW, RINGLIKE, WALL = 0.25, 0.05, 0.4  # hole over the disc; deviation from a
 FACETS, SPECK = 0.03, 1e-3  # of the hole's radius and of the disc: what facets of a ring leave within it
 
 Polygon = Any
+FINEST = 1e-4  # of the size of a section: finer corners of it go
+GRAIN = 1e-8  # of the square of that size: an area that is rounding
+THIN = 1e-6  # of the width of a polygon: no disc lies within
+CRUMB = 1e-6  # of the area of a section: what is less is not kept beside its cores
 
 
 @dataclass(slots=True)
@@ -68,7 +72,7 @@ class Cuts:
 def _section(loops: Sequence[Array], size: float) -> Polygon:
     from manifold3d import CrossSection, FillRule
 
-    return CrossSection([np.ascontiguousarray(loop) for loop in loops], FillRule.Positive).simplify(1e-4 * size)
+    return CrossSection([np.ascontiguousarray(loop) for loop in loops], FillRule.Positive).simplify(FINEST * size)
 
 
 def grown(polygon: Polygon, by: float) -> Polygon:
@@ -85,7 +89,7 @@ def _inscribed(polygon: Polygon) -> float:
     while high - low > 0.02 * high and high > 0.0:
         middle = (low + high) / 2.0
         low, high = (low, middle) if polygon.offset(-middle).is_empty() else (middle, high)
-        if high < 1e-6 * max(high_y - low_y, high_z - low_z):
+        if high < THIN * max(high_y - low_y, high_z - low_z):
             break
     return float(low)
 
@@ -131,12 +135,12 @@ def cuts_of(mesh: TriangleMesh, x: Array) -> Cuts:
         section = _section(loops, size)
         out.wholes.append(section)
         for whole in section.decompose():
-            if whole.area() < 1e-8 * size**2:
+            if whole.area() < GRAIN * size**2:
                 continue
             wall, left = _wall(float(at), whole)
             out.walls += [] if wall is None else [wall]
             for one in [whole] if wall is None else left.decompose():
-                if one.area() < 1e-8 * size**2:
+                if one.area() < GRAIN * size**2:
                     continue
                 inscribed = _inscribed(one)
                 cores = grown(grown(one, -OPENING * inscribed), OPENING * inscribed)
@@ -145,7 +149,7 @@ def cuts_of(mesh: TriangleMesh, x: Array) -> Cuts:
                     continue
                 out.cores[-1] += [Bit(float(at), c, inscribed, True, k) for c in cores.decompose()]
                 rest = (one - grown(cores, SKIN * inscribed)).decompose()
-                out.rest[-1] += [Bit(float(at), r, inscribed, step=k) for r in rest if r.area() > 1e-6 * one.area()]
+                out.rest[-1] += [Bit(float(at), r, inscribed, step=k) for r in rest if r.area() > CRUMB * one.area()]
     return out
 
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from coeflab.bodies.closed_forms import MeridianIntegrals, meridian_integrals
+from coeflab.bodies.closed_forms.revolution import MeridianIntegrals, meridian_integrals
 from coeflab.bodies.mesh.mesh import TriangleMesh
 from coeflab.core.errors import InputError
 from coeflab.core.limits import LONGEST_PART, SHORTEST_PART

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from coeflab.bodies.closed_forms import lamb_end_correction
+from coeflab.bodies.closed_forms.revolution import lamb_end_correction
 from coeflab.bodies.outline import Sections
 from coeflab.core.types import Array, brief, locking
 from coeflab.law.friction_line import friction_line

@@ -21,7 +21,7 @@ MIRRORS = tuple(np.diag(signs) for signs in ([-1.0, 1.0, 1.0], [1.0, -1.0, 1.0],
 QUARTER = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]])
 
 
-def quarter_turned(body: Body, point: Array) -> bool | None:
+def is_fourfold(body: Body, point: Array) -> bool | None:
     """Whether a quarter of a turn about x through a point leaves a body as it is; None of one without a closed surface.
 
     Parameters

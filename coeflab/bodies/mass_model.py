@@ -9,13 +9,15 @@ from typing import Annotated, Any
 
 import numpy as np
 
-from coeflab.bodies.mesh.mesh import TriangleMesh, mesh_integrals
+from coeflab.bodies.mesh.integrals import mesh_integrals
+from coeflab.bodies.mesh.mesh import TriangleMesh
 from coeflab.bodies.mesh.solids import form_solid
 from coeflab.bodies.pieces import Piece
 from coeflab.bodies.shape import Box, Cylinder, Ellipsoid
 from coeflab.core import declarations as takes
 from coeflab.core.errors import InputError, shown
 from coeflab.core.table import Table, number, with_u95
+from coeflab.core.texts import input_error
 from coeflab.core.types import Array, brief, locking
 from coeflab.law.rigid_body import MassProperties, about_another, inertia_doubt, parallel_axis
 from coeflab.law.transforms import rotation
@@ -344,18 +346,14 @@ class MassKeys(takes.Declaration):
         stated += [k for k in ("flooded", "ballast") if getattr(self, k)]
         if len(stated) != 1:
             found = " and ".join(stated) or "nothing that gives its mass"
-            raise InputError(
-                found, "one of mass, density, material, flooded = true, ballast = true", column=(stated or ["mass"])[-1]
-            )
+            raise input_error("bodies.one_mass_density", column=(stated or ["mass"])[-1], found=found)
         if (self.of is None) == (self.centre is None):
             found = "neither" if self.of is None else "both"
             raise InputError(found, "centre, or of: a piece of the shape", column="centre")
         if self.of is not None and (
             self.form != "point" or (stated[0] in ("flooded", "ballast", "mass") and self.thickness is not None)
         ):
-            raise InputError(
-                f"{stated[0]} of a piece", "density or material of a piece, or a form in its place", column="of"
-            )
+            raise input_error("bodies.density_material_piece", column="of", stated=stated[0])
         if self.thickness is not None and self.of is None:
             raise InputError("a thickness", "of as well: the piece whose shell it is", column="thickness")
         for key in ("length", "width", "height", "radius"):
@@ -367,9 +365,7 @@ class MassKeys(takes.Declaration):
                     column=key,
                 )
         if self.form == "point" and self.of is None and stated[0] not in ("mass", "ballast"):
-            raise InputError(
-                f"a point, with {stated[0]}", f"form {', '.join(list(SIZES)[1:])} with its sizes", column="form"
-            )
+            raise input_error("bodies.form_sizes", column="form", stated=stated[0], list=", ".join(list(SIZES)[1:]))
         if self.inertia is not None:
             if self.mass is None or self.form != "point" or self.of is not None:
                 raise InputError("an inertia", "one with a stated mass at a point", column="inertia")
@@ -435,9 +431,7 @@ class MassKeys(takes.Declaration):
         volume = outer.volume - inner.volume
         if not 0.0 < inner.volume < outer.volume or volume > 1.02 * outer.area * self.thickness:
             found_thickness = f"{self.thickness:g} m, which leaves nothing within {self.of}"
-            raise InputError(
-                found_thickness, "a thickness that leaves a room, or no thickness: filled", column="thickness"
-            )
+            raise input_error("bodies.thickness_leaves_room", column="thickness", found=found_thickness)
         centre = (outer.volume * outer.centre - inner.volume * inner.centre) / volume
         second = outer.second_moments + outer.volume * np.outer(outer.centre - centre, outer.centre - centre)
         second = second - inner.second_moments - inner.volume * np.outer(inner.centre - centre, inner.centre - centre)
@@ -493,11 +487,7 @@ def modelled(
     flooded = sum(part.volume for part in parts if part.flooded)
     if flooded > volume:
         i = next(i for i, one in enumerate(keys) if one.flooded)
-        raise InputError(
-            f"{flooded:.4g} m^3 of flooded rooms",
-            f"at most {volume:.4g} m^3, the volume of the body",
-            column=f"mass[{i}].flooded",
-        )
+        raise input_error("bodies.flooded_rooms", column=f"mass[{i}].flooded", flooded=flooded, volume=volume)
     spare = [i for i, one in enumerate(keys) if one.ballast]
     if len(spare) > 1:
         raise InputError("a second ballast", "one part with ballast = true", column=f"mass[{spare[1]}].ballast")

@@ -17,7 +17,7 @@ from coeflab.bodies.cuts import (
     reach,
     width,
 )  # fmt: skip
-from coeflab.bodies.mesh.solids import polygons
+from coeflab.bodies.mesh.silhouettes import polygons
 from coeflab.bodies.outline import Bluff, Foil, Sections
 from coeflab.core.types import Array
 

@@ -10,8 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from coeflab.bodies.mesh.mesh import TriangleMesh
-from coeflab.bodies.mesh.solids import Outline as Silhouette
-from coeflab.bodies.mesh.solids import mesh_outline
+from coeflab.bodies.mesh.silhouettes import Outline as Silhouette
+from coeflab.bodies.mesh.silhouettes import mesh_outline
 from coeflab.bodies.outline import Foil, Outline
 from coeflab.bodies.shape import Part, Parts, Revolution, Shape
 from coeflab.core.types import Array, Faces

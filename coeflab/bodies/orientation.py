@@ -173,11 +173,7 @@ def _laid_along(shape: Shape, long: int) -> tuple[Array, bool]:
         turn = np.array([[0.0, 1.0, 0.0], [-1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])
     if not isinstance(shape, TriangleMesh):
         return turn, False
-    laid = _turned(shape, turn)
+    laid = replace(shape, vertices=shape.vertices @ turn.T)
     outline = outline_of(laid)
     turn = _upright(*_aside(laid, outline)) @ turn
     return _tail_aft(outline) @ turn, bool(outline.hulls) and _ahead(outline) != 0
-
-
-def _turned(shape: TriangleMesh, turn: Array) -> TriangleMesh:
-    return replace(shape, vertices=shape.vertices @ turn.T)

@@ -17,7 +17,7 @@ from coeflab.bodies.outline import Bluff, Foil, Outline, Propeller, RingWing, Se
 from coeflab.bodies.pieces import HULL, Control
 from coeflab.bodies.shape import Part, Parts, Revolution
 from coeflab.bodies.thrusters import Thruster
-from coeflab.core.errors import InputError
+from coeflab.core.texts import input_error
 from coeflab.core.types import Array
 
 STATIONS, SHARES, STEPS = 121, 33, 257
@@ -169,9 +169,9 @@ def with_controls(foils: Iterable[Foil], controls: Iterable[Control]) -> tuple[t
         for one in (c for c in known if foil.name.removesuffix("_image") in c.parts):
             sign = float(one.axis[1:] @ way)
             if abs(sign) < ACROSS:
-                raise InputError(
-                    f"axis {_triple(one.axis)} of {one.name}, across the span of {foil.name}", "an axis along it", column="control.axis",
-                    advice=f"{_triple(np.array([0.0, *way]) * (np.sign(way[1 if one.name == 'dr' else 0]) or 1.0))} is: a fin turns about its span.",
+                raise input_error(
+                    "bodies.axis_across_span", column="control.axis", triple=_triple(one.axis), name=one.name, name_2=foil.name,
+                    triple_2=_triple(np.array([0.0, *way]) * (np.sign(way[1 if one.name == "dr" else 0]) or 1.0)),
                 )  # fmt: skip
             if one.name in turns:
                 left.append(f"{foil.name} turns by {one.name} twice, and counts once")

@@ -14,8 +14,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from coeflab.bodies.mesh.mesh import TriangleMesh
-from coeflab.bodies.mesh.meshing import dense_meridian, meshed, revolved, rings
+from coeflab.bodies.mesh.meshing import dense_meridian, meshed
 from coeflab.bodies.mesh.source import MeshSource
+from coeflab.bodies.mesh.structured_surface import revolved, rings
 from coeflab.bodies.shape import Parts, Revolution, as_revolution
 from coeflab.core import declarations as takes
 from coeflab.core.errors import InputError, shown

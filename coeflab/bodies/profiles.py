@@ -15,11 +15,12 @@ from itertools import pairwise
 import numpy as np
 from numpy.polynomial import Polynomial
 
-from coeflab.bodies.closed_forms import graded_nodes
+from coeflab.bodies.closed_forms.revolution import graded_nodes
 from coeflab.bodies.shape import Revolution, within_reach
 from coeflab.core.declarations import Angle, Declaration, Length, Pure
 from coeflab.core.errors import InputError
 from coeflab.core.limits import LONGEST_PART
+from coeflab.core.texts import input_error
 from coeflab.core.types import Array
 
 BLUNTEST, SHARPEST = 5.0, 0.5
@@ -69,16 +70,10 @@ class Myring(Declaration):
                 raise InputError(f"{getattr(self, name):g} m", "a length above zero", column=name)
         within_reach("Myring hull", nose=self.nose, tail=self.tail, diameter=self.diameter)
         if not 0.0 <= self.middle <= LONGEST_PART:
-            raise InputError(
-                f"{self.middle:g} m", f"a length of zero or more, at most {LONGEST_PART:g} m", column="middle"
-            )
+            raise input_error("bodies.length_zero_more", column="middle", middle=self.middle, longest_part=LONGEST_PART)
         for name, whole in (("nose_offset", self.nose), ("tail_offset", self.tail)):
             if not 0.0 <= getattr(self, name) < whole:
-                raise InputError(
-                    f"{getattr(self, name):g} m",
-                    f"zero or more, and less than {whole:g} m, the full length",
-                    column=name,
-                )
+                raise input_error("bodies.zero_more_less", column=name, getattr=getattr(self, name), whole=whole)
         if not SHARPEST <= self.exponent <= BLUNTEST:
             raise InputError(f"{self.exponent:g}", f"a number from {SHARPEST:g} to {BLUNTEST:g}", column="exponent")
         steepest = np.arctan(1.5 * self.diameter / self.tail)
@@ -88,11 +83,7 @@ class Myring(Declaration):
             found = f"{np.degrees(self.tail_angle):.4g} deg, whose tail swells beyond the diameter"
         else:
             return
-        raise InputError(
-            found,
-            f"an angle from 0 to {np.degrees(steepest):.4g} deg, where tan(angle) is 3 diameters over 2 tails",
-            column="tail_angle",
-        )
+        raise input_error("bodies.angle_deg_where", column="tail_angle", found=found, degrees=np.degrees(steepest))
 
     @property
     def joints(self) -> tuple[float, float, float, float]:
@@ -165,15 +156,11 @@ def _bow(x: Array) -> tuple[Array, Array]:
     return p ** (1.0 / 1.05), half
 
 
-def _rest(x: Array, square: Polynomial) -> tuple[Array, Array]:
-    return np.clip(square(x), 0.0, None), square.deriv()(x) / 2.0
-
-
 def _piece(x: Array, end: float) -> tuple[Array, Array]:
     if end == BOW_END:
         return _bow(x)
     square = {MIDDLE_END: Polynomial([1.0]), AFTERBODY_END: _AFTERBODY, CAP_END: _CAP}[end]
-    return _rest(x, square)
+    return np.clip(square(x), 0.0, None), square.deriv()(x) / 2.0
 
 
 def suboff_profile(x: Array) -> tuple[Array, Array]:
@@ -184,25 +171,6 @@ def suboff_profile(x: Array) -> tuple[Array, Array]:
         here = np.searchsorted(ends, x).clip(max=3) == k
         square[here], half[here] = _piece(x[here], end)
     return LARGEST_RADIUS * np.sqrt(square), LARGEST_RADIUS**2 * half
-
-
-def suboff_radius(aft: float) -> float:
-    """Radius of the bare hull, m.
-
-    Parameters
-    ----------
-    aft : float
-        Distance aft of the nose, m, from 0 to 4.3561 (14.291667 ft).
-
-    Raises
-    ------
-    InputError
-        Ahead of the nose or aft of the tail.
-    """
-    x = aft / FOOT
-    if not -1e-12 <= x <= CAP_END + 1e-12:
-        raise InputError(f"x = {aft:g} m aft of the nose", f"0 to {CAP_END * FOOT:.4f} m, where the equations hold")
-    return float(FOOT * suboff_profile(np.array([x]))[0][0])
 
 
 def suboff_meridian(nodes: int = NODES) -> Revolution:

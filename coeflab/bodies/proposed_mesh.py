@@ -89,7 +89,7 @@ def proposed(path: Path, unit: str = "", axes: str = "") -> Proposal:
     )
     if mesh is not None and not stated:
         body = Body(
-            name=path.stem, title=path.name, datum=Datum(f"origin of {path.name}"), reference_point=np.zeros(3), lengths={},
+            name=path.stem, title=path.name, datum=Datum.of_file(path.name), reference_point=np.zeros(3), lengths={},
             configurations=(computed(shape, ()),), source=Source(path.name), files=(), shape=shape, axes=replace(frame, spelled=False),
         )  # fmt: skip
         contradicted = doubt(body)
@@ -97,7 +97,7 @@ def proposed(path: Path, unit: str = "", axes: str = "") -> Proposal:
             axes = contradicted["better"]
             found.append(contradicted)
     if not stated and mesh is None:
-        axes = _by_extents(shape.extents) or axes
+        axes = ("", "starboard,forward,up", "port,up,forward")[int(np.argmax(shape.extents))] or axes
     turned = np.abs(parse_axes(axes).rotation @ frame.rotation.T) @ shape.extents
     found.append(Finding.of("mesh.axes", path.name, Severity.NOTE, axes=axes, sizes=[float(x) for x in turned]))
     return Proposal(
@@ -121,8 +121,3 @@ def _surface(vertices: Array, faces: Faces, path: Path) -> tuple[SoundMesh | Non
         except InputError as wrong:
             why = wrong.found
     return None, True, why
-
-
-def _by_extents(sizes: Array) -> str:
-    """Of a surface that encloses nothing: its longest extent forward; empty where that is x."""
-    return ("", "starboard,forward,up", "port,up,forward")[int(np.argmax(sizes))]

@@ -31,7 +31,7 @@ from coeflab.bodies.cuts import (
 )  # fmt: skip
 from coeflab.bodies.joined_foils import joined
 from coeflab.bodies.mesh.mesh import TriangleMesh
-from coeflab.bodies.mesh.solids import polygons
+from coeflab.bodies.mesh.silhouettes import polygons
 from coeflab.bodies.mesh_appendages import (
     FEWEST,
     SMALL,

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from coeflab.bodies.closed_forms import MeridianIntegrals, graded_nodes, meridian_integrals
+from coeflab.bodies.closed_forms.revolution import MeridianIntegrals, graded_nodes, meridian_integrals
 from coeflab.bodies.forms import (
     CLASSES,
     Bar,
@@ -24,6 +24,7 @@ from coeflab.bodies.forms import (
 )
 from coeflab.bodies.mesh.mesh import TriangleMesh
 from coeflab.core.errors import InputError, shown
+from coeflab.core.texts import input_error
 from coeflab.core.types import Array, brief, locking
 from coeflab.law.symbols import MOTIONS
 
@@ -151,9 +152,8 @@ class Part:
         if not proper:
             raise InputError(f"the pose of part {shown(self.name)}, which mirrors or stretches", "a rotation")
         if self.fit is not None and self.fit.kind not in (CLASSES[type(self.form)], OTHER):
-            raise InputError(
-                f"the fit of a {self.fit.kind} for part {shown(self.name)}, a {CLASSES[type(self.form)]}",
-                "the fit of this form", column="fit", advice="Delete the fit of a part whose form you change.",
+            raise input_error(
+                "bodies.fit_part", column="fit", kind_2=self.fit.kind, name=shown(self.name), classes=CLASSES[type(self.form)],
             )  # fmt: skip
 
     @property

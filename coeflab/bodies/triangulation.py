@@ -13,8 +13,9 @@ from coeflab.bodies.body import Body
 from coeflab.bodies.mirror_planes import NAMES, mirrors, vanishing
 from coeflab.bodies.rough_guide import rough_finding, rough_u95, unresolved_finding
 from coeflab.bodies.shape import Ellipsoid, Part, Parts, Shape
-from coeflab.core.errors import InputError, shown
+from coeflab.core.errors import shown
 from coeflab.core.finding import Finding
+from coeflab.core.texts import input_error
 from coeflab.core.types import Array, brief
 from coeflab.law.added_mass import AddedMass
 from coeflab.law.symbols import COMPONENTS, MOTIONS
@@ -123,9 +124,7 @@ class Triangulation:
         ranked = sorted(self.results, key=lambda r: (r.rough, order.get(r.method, _place(r.method))))
         found = next((r for r in ranked if r.definiteness.holds), None)
         if found is None:
-            raise InputError(
-                f"no added mass of {shown(self.body.name)} that is a kinetic energy", "a symmetric, positive matrix"
-            )
+            raise input_error("bodies.added_mass_kinetic", name=shown(self.body.name))
         caution = self._caution(found)
         found = self._symmetric(replace(found, statements=(caution, *found.statements)) if caution else found)
         if not found.rough:

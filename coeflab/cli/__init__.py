@@ -164,8 +164,10 @@ def _built(name: str) -> Any:
         for option in command.params:
             option.callback = _finite(option.callback)
     if name not in WITHOUT_TABLES:
+        from coeflab.cli.options import wide
+
         for command in getattr(out, "commands", {"": out}).values():
-            command.params.append(_wide())
+            command.params.append(wide())
     return out
 
 
@@ -188,27 +190,6 @@ def _finite(before: Any) -> Any:
         return value if before is None else before(ctx, param, value)
 
     return checked
-
-
-def _wide() -> Any:
-    """``--wide``, which every command has that prints tables."""
-    from coeflab.cli import show
-
-    one = typer.Typer(add_completion=False)
-
-    @one.command()
-    def _take(
-        wide: bool = typer.Option(
-            False,
-            "--wide",
-            callback=show.widen,
-            expose_value=False,
-            help="Print every table and column, however long the lines.",
-        ),
-    ) -> None:
-        pass  # fmt: skip
-
-    return typer.main.get_command(one).params[0]
 
 
 app = typer.Typer(

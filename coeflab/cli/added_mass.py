@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import typer
 
 from coeflab.cli import options, show
+from coeflab.core.texts import input_error
 
 if TYPE_CHECKING:
     from coeflab.api.body import Body
@@ -82,12 +83,7 @@ def distances_of(wall: str, distance: str, method: str) -> list[float]:
     from coeflab.core.errors import InputError, shown
 
     if not (wall and distance) or method not in ("all", "panel"):
-        raise InputError(
-            "--wall without --distance, or for another method than panel",
-            "--wall bottom --distance 0.5,1,2",
-            column="--wall",
-            advice="Only the panel method knows walls; it needs both.",
-        )
+        raise input_error("commands.wall_without_distance", column="--wall")
     try:
         return [float(word) for word in distance.split(",")]
     except ValueError:

@@ -35,9 +35,9 @@ def command(*, first: Path, second: Path, speed: str = "", json: bool = False) -
     else:
         _print(found)
         if done:
-            from coeflab.report.tables import models as comparison_tables
+            from coeflab.report.tables import compared_files
 
-            show.table(comparison_tables.behaviour(done, found.a, found.b))
+            show.table(compared_files.behaviour(done, found.a, found.b))
     if found.disagrees:
         raise typer.Exit(1)
 
@@ -94,13 +94,13 @@ def as_json(found: Comparison) -> dict[str, Any]:
 
 def _print(found: Comparison) -> None:
     from coeflab.api.comparing import Verdict
-    from coeflab.report.tables import models as comparison_tables
+    from coeflab.report.tables import compared_files
 
     for table, differ in (
-        (comparison_tables.coefficients(found), comparison_tables.differ(found)),
-        (comparison_tables.models(found), [False] * len(found.models)),
+        (compared_files.coefficients(found), compared_files.differ(found)),
+        (compared_files.models(found), [False] * len(found.models)),
     ):
-        shown = table if show.whole() else comparison_tables.comparable(table, differ)
+        shown = table if show.whole() else compared_files.comparable(table, differ)
         if shown.rows:
             show.table(shown)
         elif table.rows:

@@ -121,7 +121,7 @@ def described(part: importing.Part, found: importing.Interpretation, *, whole: b
         show.table(raw_tables.columns(raw, found.proposals, found.mapping))
         show.table(raw_tables.stated(raw))
     print_list("Left out or mended", raw.remarks, most or MOST)
-    shows = [e.text for e in found.shows if whole or not e.text.startswith("warning")]
+    shows = [e.text for e in found.shows if whole or not e.warns]
     print_list("The numbers show", shows, most + 1 if most else MOST)
 
 

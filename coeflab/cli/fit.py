@@ -90,8 +90,7 @@ def command(
             _diagnose(study)
         if figure is not None:
             show.path(figure)
-    if study.failed or (strict and study.warned):
-        raise typer.Exit(1)
+    show.exit_code(study.failed, study.warned, strict)
 
 
 def given(words: list[str], equations: list[str]) -> tuple[list[str], dict[str, int | float | str]]:
@@ -160,7 +159,7 @@ def _draw(study: Study, symbols: list[str], file: Path) -> None:
     from coeflab.report.figures.estimator import estimator_figure
     from coeflab.report.figures.files import as_kind
     from coeflab.report.figures.model import distinct, model_figures
-    from coeflab.report.figures.svg import sheet
+    from coeflab.report.figures.svg_file import sheet
     from coeflab.report.figures.sweep import sweep_figure
     from coeflab.report.sections.oscillations import oscillation_figures
 
@@ -195,12 +194,12 @@ def _diagnose(study: Study) -> None:
 
 
 def _print(study: Study, symbols: list[str]) -> None:
+    from coeflab.report.tables import budgets as budget_tables
     from coeflab.report.tables import force_tables
     from coeflab.report.tables import models as model_tables
     from coeflab.report.tables import nouns as noun_tables
     from coeflab.report.tables import oscillations as oscillation_tables
     from coeflab.report.tables import results as tables
-    from coeflab.report.tables import uncertainty as budget_tables
 
     found = tables.headline(study, symbols) or " ".join(oscillation_tables.headline(f) for f in study.fits)
     found = found or " ".join(tables.resistances(study))
@@ -216,7 +215,7 @@ def _print(study: Study, symbols: list[str]) -> None:
         models = tuple(m for f in study.fits for m in f.models)
         for model in models:
             show.table(noun_tables.terms(model))
-            show.table(budget_tables.shared(model))
+            show.table(budget_tables.model_parts(model))
         for f in study.fits:
             show.table(oscillation_tables.explained(f, study.fits))
             show.table(oscillation_tables.over_frequency(f))

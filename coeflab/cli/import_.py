@@ -14,6 +14,7 @@ import typer
 
 from coeflab.cli import options, show
 from coeflab.core.errors import OutputError
+from coeflab.core.texts import input_error
 
 if TYPE_CHECKING:
     from coeflab import ForceTable
@@ -81,7 +82,6 @@ def command(
 
 def _one_place(paths: Sequence[str]) -> tuple[Path, list[str]]:
     """What is read, and the option that chooses several files of a folder."""
-    from coeflab.core.errors import InputError
     from coeflab.core.files import readable, typed
 
     files = [typed(path) for path in paths]
@@ -91,10 +91,7 @@ def _one_place(paths: Sequence[str]) -> tuple[Path, list[str]]:
         readable(file)
     folders = {file.resolve().parent for file in files}
     if len(folders) > 1 or any(file.is_dir() for file in files):
-        raise InputError(
-            f"{len(files)} paths", "one file, several files of one folder, or one folder",
-            advice="What belongs to one campaign lies in one folder; tests of two campaigns are imported one by one.",
-        )  # fmt: skip
+        raise input_error("commands.one_file_several", count_of_files=len(files))
     return files[0].parent, [f"files={','.join(file.name for file in files)}"]
 
 
@@ -200,7 +197,7 @@ def _first_slopes(folder: Path) -> bool:
             left=frozenset({0}),
         ))  # fmt: skip
         for c in study.checks:  # the one hint at a wrong sign of a moment; a hull with large fins has it too
-            if c.name == "centre_of_pressure" and " behind " in c.statistic:
+            if c.name == "centre_of_pressure" and c.finding is not None and c.finding["way"] == "behind":
                 show.marked(str(c.severity), f"centre of pressure, {c.subject}: {c.statistic}. {c.comment}")
         show.findings(study.checks, most=FINDINGS)
         failed = any(c.severity is Severity.FAIL for c in study.checks)

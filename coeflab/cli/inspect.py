@@ -10,6 +10,7 @@ import typer
 
 from coeflab.cli import options, show
 from coeflab.core.errors import InputError
+from coeflab.core.texts import input_error
 
 if TYPE_CHECKING:
     from coeflab import Body, ForceTable
@@ -71,11 +72,7 @@ def command(
         _body(body, density, json)
         return
     if unit or axes or repair or fill or sheets:
-        raise InputError(
-            "--unit, --axes, --repair, --fill or --sheets",
-            "a mesh file with them",
-            advice="A campaign.toml says these itself.",
-        )
+        raise input_error("commands.unit_axes_repair")
     every = [*option, *of_runs(name, runs)]
     if as_ or every or is_raw(table):
         given = [("--as", as_), *(("--name", n) for n in name), ("--runs", str(runs or ""))]

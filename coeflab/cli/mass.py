@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from coeflab.cli import options, show
+from coeflab.core.texts import input_error
 
 EXAMPLE = "coeflab mass myring_auv"
 
@@ -14,14 +15,10 @@ def command(*, body: str, json: bool = False) -> None:
     From [[mass]] in its body.toml: solids, shells, payload, ballast and flooded rooms (docs/bodies.md).
     """
     from coeflab.api.body import read_body
-    from coeflab.core.errors import InputError
 
     found = read_body(body)
     if found.mass_model is None:
-        raise InputError(
-            f"{found.name}, a body without [[mass]]", "parts with masses",
-            advice='Add [[mass]] with name, and mass and centre, or material and of = "hull" and thickness.',
-        )  # fmt: skip
+        raise input_error("commands.body_without_mass", name=found.name)
     if json:
         show.json_object({"body": found.name, **found.mass_model.as_json()})
         return

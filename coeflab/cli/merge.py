@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import typer
 
 from coeflab.cli import options, show
+from coeflab.core.texts import input_error
 
 if TYPE_CHECKING:
     from coeflab.api.merging import Merge
@@ -27,13 +28,13 @@ def command(
     """
     from coeflab.api.merging import merge, own_numbers
     from coeflab.api.parameters import read_parameters
-    from coeflab.core.errors import InputError
     from coeflab.core.files import write_all
 
     if bool(other) == bool(numbers):
-        raise InputError(
-            "OTHER and --set together" if other else "nothing to merge", "a parameter file or a campaign, or numbers by --set",
-            column="OTHER", advice="Merge the file first, then set the numbers." if other else "",
+        raise input_error(
+            "commands.parameter_file_campaign", column="OTHER",
+            found="OTHER and --set together" if other else "nothing to merge",
+            advice="Merge the file first, then set the numbers." if other else "",
         )  # fmt: skip
     chosen = own_numbers(numbers)
     with show.progress(json) as say:

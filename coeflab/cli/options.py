@@ -11,7 +11,7 @@ from typing import Any, TypeVar
 import typer
 from typer.models import ParameterInfo
 
-from coeflab.cli import complete
+from coeflab.cli import complete, show
 from coeflab.core.text.bounded import own_text
 from coeflab.core.text.toml import own_toml
 
@@ -56,3 +56,18 @@ def worded(run: Run) -> Run:
     whole = signature(run)
     run.__signature__ = whole.replace(parameters=list(map(taken, whole.parameters.values())))  # type: ignore[attr-defined]
     return run
+
+
+def wide() -> Any:
+    """``--wide``, which every command has that prints tables."""
+    one = typer.Typer(add_completion=False)
+
+    @one.command()
+    def _take(
+        wide: bool = typer.Option(
+            False, "--wide", callback=show.widen, expose_value=False, **_words("coeflab.cli")["shared"]["wide"]
+        ),
+    ) -> None:
+        pass  # fmt: skip
+
+    return typer.main.get_command(one).params[0]

@@ -1,4 +1,4 @@
-"""``coeflab report``: a study as HTML and PDF."""
+"""``coeflab report``: a study's report in one or more formats."""
 
 from __future__ import annotations
 

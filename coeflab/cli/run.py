@@ -9,8 +9,6 @@ import shlex
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-import typer
-
 from coeflab.cli import options, show
 
 if TYPE_CHECKING:
@@ -70,8 +68,7 @@ def carry_out(plan: Plan | Path, out: Path | None, as_json: bool, strict: bool =
             show.command_line("Appendix", f"coeflab report {shlex.quote(typed_as)} --full")
     for refused in study.refused:
         show.error(f"error: {refused.why}")
-    if study.failed or (strict and study.warned):
-        raise typer.Exit(1)
+    show.exit_code(study.failed, study.warned, strict)
 
 
 def summarise(study: Study, folder: Path) -> None:

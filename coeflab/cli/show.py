@@ -407,6 +407,17 @@ def failed(found: Sequence[Check]) -> bool:
     return any(c.severity is Severity.FAIL for c in found)
 
 
+def exit_code(failed: bool, warned: bool, strict: bool) -> None:
+    """End with 1 where a finding fails, or warns and no warning is allowed.
+
+    Raises
+    ------
+    typer.Exit
+    """
+    if failed or (strict and warned):
+        raise typer.Exit(1)
+
+
 def _short(comment: str) -> str:
     """The first sentence of what a finding means; all of it with ``--wide``."""
     first, stop, _ = comment.partition(". ")

@@ -53,14 +53,17 @@ def command(
         refuse_others(folder, files)
     changed = write_all(folder, files)
     if json:
-        show.json_object(found.as_json())
+        from coeflab.report.as_json.shapes import simplification
+
+        show.json_object(simplification(found))
         raise typer.Exit(1 if found.failures else 0)
+    from coeflab.report.tables import simplification as tables
+
     show.text(found.advice)
     if found.failures:
         show.text(f"FAILED: areas off by more than 20 %: {'; '.join(found.failures)}.")
-    show.table(found.agreement_table())
-    show.table(found.part_table())
-    show.table(found.total_table())
+    for table in (tables.agreement_table, tables.part_table, tables.total_table):
+        show.table(table(found))
     for file, new in changed.items():
         show.path(f"{folder / file}:", "written" if new else "unchanged")
     if found.shape.rough:

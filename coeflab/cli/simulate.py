@@ -13,6 +13,7 @@ from coeflab.cli import options, show
 from coeflab.core.applications import declared
 from coeflab.core.errors import InputError, shown
 from coeflab.core.registry import of_application
+from coeflab.core.texts import input_error
 
 if TYPE_CHECKING:
     from coeflab.api.motion import Simulation
@@ -159,10 +160,7 @@ def _in_radians(word: str, column: str) -> str:
     except ValueError:
         return word  # the manoeuvre says what is wrong with it
     if not unit and 0.0 < abs(value) < RAD_AT_MOST:
-        raise InputError(
-            f"{word}, an angle without a unit", f"degrees, at least {RAD_AT_MOST:g}, or a unit: {word}deg", column=column,
-            advice=f"Radians are written {word}rad.",
-        )  # fmt: skip
+        raise input_error("commands.angle_without_unit", column=column, word=word, rad_at_most=RAD_AT_MOST)
     return f"{name}={value if unit == 'rad' else radians(value)!r}"
 
 
@@ -207,16 +205,14 @@ def _print(result: Simulation, written: list[Path]) -> None:
 def _write(result: Simulation, folder: Path, to: str) -> list[Path]:
     from coeflab.core.files import write_all
     from coeflab.report.figures.motion import motion_figures
-    from coeflab.report.figures.svg import sheet
+    from coeflab.report.figures.svg_file import sheet
     from coeflab.report.tables.motion import motion_csv, motion_parquet
 
     name = result.manoeuvre.name
     try:
         table = motion_csv(result.trajectory) if to == "csv" else motion_parquet(result.trajectory)
     except ImportError:
-        raise InputError(
-            "--to parquet without pyarrow", "the extra", column="--to", advice='pip install "coeflab[parquet]"'
-        ) from None
+        raise input_error("commands.parquet_without_pyarrow", column="--to") from None
     rows = [(f,) for f in motion_figures(result.trajectory.until(result.determined), name, result.vehicle.length)]
     content = {f"{name}.{to}": table, **({f"{name}.svg": sheet(rows, result.vehicle.water.source)} if rows else {})}
     write_all(folder, content)

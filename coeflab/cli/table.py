@@ -12,6 +12,7 @@ import typer
 from coeflab.cli import options, show
 from coeflab.core.errors import InputError, shown
 from coeflab.core.limits import TABLE_POINTS
+from coeflab.core.texts import input_error
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -138,10 +139,7 @@ def _values(name: str, text: str, most: int) -> NDArray[np.float64]:
             raise InputError(shown(text), "a low below the high and a step above zero", column=f"--{name}")
         count = (high - low) / step + 1.0
     if not count <= most + 1e-6:
-        raise InputError(
-            f"a grid of more than {TABLE_POINTS:,} points", "a coarser one", column=f"--{name}",
-            advice="Take a larger step or fewer values.",
-        )  # fmt: skip
+        raise input_error("commands.grid_more_than", column=f"--{name}", table_points=TABLE_POINTS)
     if not ranged:
         return np.array(numbers)
     return np.asarray(low + step * np.arange(int(count + 1e-9)))

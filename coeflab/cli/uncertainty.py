@@ -98,7 +98,7 @@ def _print(result: Carried, written: list[Path]) -> None:
 
 def _write(result: Carried, folder: Path) -> list[Path]:
     from coeflab.core.files import write_all
-    from coeflab.report.figures.svg import sheet
+    from coeflab.report.figures.svg_file import sheet
     from coeflab.report.figures.uncertainty import uncertainty_figures
     from coeflab.report.tables.uncertainty import members_csv
 

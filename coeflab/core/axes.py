@@ -55,6 +55,12 @@ class Axes:
         return np.array([DIRECTIONS[d] for d in self.directions]).T
 
     @property
+    def columns(self) -> dict[str, tuple[str, float]]:
+        """For every FRD component the table's column and its sign; axes are at right angles, so each is one column."""
+        at = np.argmax(np.abs(self.rotation), axis=1)
+        return {g[i]: (g[j], float(self.rotation[i, j])) for g in ("XYZ", "KMN") for i, j in enumerate(at)}
+
+    @property
     def name(self) -> str:
         """FRD, FLU or CFD, else the three directions."""
         named = {directions: name for name, directions in FRAMES.items()}
@@ -204,6 +210,9 @@ SHIPPED = {
 }
 
 
+_ORIGIN = "origin of "
+
+
 @dataclass(frozen=True, slots=True)
 class Datum:
     """A point of the body by its id; two are equal where their ids are, whatever their notes say.
@@ -235,6 +244,16 @@ class Datum:
         text = text.strip()
         known, words = SHIPPED.get(text, (text.casefold() if _ID.fullmatch(text) else text, ""))
         return cls(known, note or words)
+
+    @classmethod
+    def of_file(cls, name: str) -> Datum:
+        """The origin of the axes of a mesh file, of which no file says where on the body it is."""
+        return cls(f"{_ORIGIN}{name}")
+
+    @property
+    def is_of_file(self) -> bool:
+        """Whether it is the origin of a file's axes."""
+        return self.id.startswith(_ORIGIN)
 
     def __str__(self) -> str:
         return f"{self.id}, {self.note}" if self.note else self.id

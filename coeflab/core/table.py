@@ -347,6 +347,8 @@ class Check:
         What it means and what to do.
     campaign, table : str
         Whose rows it is on; empty where it is on no rows, the table where it is on the whole campaign.
+    finding : Finding or None
+        The same as data, where its words are of a template.
     """
 
     name: str
@@ -357,6 +359,7 @@ class Check:
     comment: str
     campaign: str = ""
     table: str = ""
+    finding: Finding | None = None
 
     @classmethod
     def of(cls, code: str, subject: str, severity: Severity, **facts: Any) -> Check:
@@ -402,4 +405,4 @@ def as_check(name: str, found: Finding) -> Check:
         text = words(found)
     except PluginError:  # of a file by somebody else's plugin
         text = Wording(remark(found), "", "")
-    return Check(name, found.subject, found.severity, text.statement, text.rule, text.advice)
+    return Check(name, found.subject, found.severity, text.statement, text.rule, text.advice, finding=found)

@@ -18,6 +18,7 @@ from coeflab.bodies.mirror_planes import NAMES, forbidden, planes_of, planes_thr
 from coeflab.bodies.orientation import require_orientation
 from coeflab.core.errors import InputError
 from coeflab.core.registry import Plugin, Registry
+from coeflab.core.texts import input_error
 from coeflab.core.types import brief
 from coeflab.law.coefficient import Coefficient, CoefficientSet, Parts, Status
 from coeflab.law.rigid_body import ideal_force
@@ -185,9 +186,7 @@ def estimated(body: Body, water: Water, towed: bool = False, added_mass: AddedMa
     outline = body.outline
     if outline is None:
         advice = "Give its body.toml a shape: a mesh, a hull form with fins, or parts."
-        raise InputError(
-            f"{body.name} without an outline", "a body whose reader knows its hull, fins and parts", advice=advice
-        )
+        raise input_error("bodies.without_outline", name=body.name, advice=advice)
     found: list[Contribution] = []
     for name in METHODS.names():
         with METHODS.guarded(name):

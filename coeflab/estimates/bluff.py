@@ -8,11 +8,11 @@ from functools import partial
 import numpy as np
 from numpy.typing import NDArray
 
-from coeflab.bodies.closed_forms import ellipsoid_added_mass
+from coeflab.bodies.closed_forms.ellipsoid import ellipsoid_added_mass
 from coeflab.bodies.outline import Bluff, Outline
 from coeflab.core.types import Array, brief, locking
 from coeflab.estimates import Contribution, Water
-from coeflab.law.added_mass import composed
+from coeflab.law.definiteness import composed
 from coeflab.law.rigid_body import ideal_force
 
 summary = "bluff parts and bodies of ROV type: drag by faces, shielded and not, across the motion and along it"

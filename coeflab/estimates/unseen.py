@@ -19,17 +19,16 @@ summary = "half-widths for area that no other method sees, and for the lift of b
 citations = ("whicker1958", "pitts1957", "hoerner1965")
 
 ASPECT = 2.0  # with its mirror image: in the middle of what was tested, 1 to 3
-CARRIED = (
-    (1.0 + 1.0 / 3.0) ** 2 + 4.0 / 3.0
-) / 2.0  # NACA 1307, a foil twice as high as the hull's radius: with the hull's share
-CROSS = 1.17  # a plate across, Hoerner 1965, chapter 3
-ALONG = 0.05  # friction of both sides and interference, of the area from the side
+# NACA 1307, a foil twice as high as the hull's radius: with the hull's share.
+HULL_CARRYOVER = ((1.0 + 1.0 / 3.0) ** 2 + 4.0 / 3.0) / 2.0
+PLATE_DRAG = 1.17  # a plate across, Hoerner 1965, chapter 3
+FRICTION_ALONG = 0.05  # friction of both sides and interference, of the area from the side
 
 
 @brief
 @dataclass(frozen=True, slots=True, eq=False)
 @locking("centre")
-class Half:
+class HalfWidth:
     """One half-width of a force at a place.
 
     Attributes
@@ -61,7 +60,7 @@ class Half:
 
 
 def contributions(outline: Outline, water: Water) -> tuple[Contribution, ...]:
-    """Half-widths of every unseen area, and of the lift of bluff parts beside a hull.
+    """HalfWidth-widths of every unseen area, and of the lift of bluff parts beside a hull.
 
     Parameters
     ----------
@@ -70,21 +69,21 @@ def contributions(outline: Outline, water: Water) -> tuple[Contribution, ...]:
     """
     out = []
     for one in outline.unseen:
-        out.append(_of(one.name, "unseen area", one.centre, one.areas, CROSS, water))
+        out.append(_contribution(one.name, "unseen area", one.centre, one.areas, PLATE_DRAG, water))
     for part in outline.bluff if outline.hulls else ():
-        out.append(_of(part.name, "lift not computed", part.centre, part.areas, 0.0, water))
+        out.append(_contribution(part.name, "lift not computed", part.centre, part.areas, 0.0, water))
     return tuple(out)
 
 
-def _of(name: str, kind: str, centre: Array, areas: Array, cross: float, water: Water) -> Contribution:
-    slope = low_aspect_lift_slope(ASPECT) * CARRIED
+def _contribution(name: str, kind: str, centre: Array, areas: Array, cross: float, water: Water) -> Contribution:
+    slope = low_aspect_lift_slope(ASPECT) * HULL_CARRYOVER
     halves: list[Forces] = []
     for row in (1, 2):
-        halves.append(Half(centre, row, slope * float(areas[row]), 0.0, water.density))
+        halves.append(HalfWidth(centre, row, slope * float(areas[row]), 0.0, water.density))
         if cross:
-            halves.append(Half(centre, row, 0.0, cross * float(areas[row]), water.density))
+            halves.append(HalfWidth(centre, row, 0.0, cross * float(areas[row]), water.density))
     if cross:
-        halves.append(Half(centre, 0, 0.0, ALONG * float(areas[1:].sum()), water.density))
+        halves.append(HalfWidth(centre, 0, 0.0, FRICTION_ALONG * float(areas[1:].sum()), water.density))
     place = f"half-width: lift of a foil of aspect {ASPECT:g}, drag of a plate"
     return Contribution(name, kind, "unseen", _none, 0.0, ", ".join(citations), place, scatter=tuple(halves))
 

@@ -29,10 +29,12 @@ from coeflab.core.texts import input_error
 from coeflab.core.types import Array
 from coeflab.core.wording import finite
 from coeflab.fits.results.fit_result import FitResult, result_of
-from coeflab.fits.results.fitted_model import FittedModel, coefficient_of, residuals_in_words
+from coeflab.fits.results.fitted_model import FittedModel, coefficient_of
+from coeflab.fits.results.lack_of_fit import residuals_in_words
+from coeflab.fits.rows.only_moving import AREAS, PRIMES, area_of, area_settings, only_moving
 from coeflab.fits.rows.regression import Area, Rows, collect, model_of
-from coeflab.fits.rows.sweeps import AREAS, PRIMES, area_of, area_settings, only_moving
-from coeflab.fits.statistics.linear_model import fit_linear, t_probability
+from coeflab.fits.statistics.linear_model import fit_linear
+from coeflab.fits.statistics.robust_errors import t_probability
 from coeflab.law.coefficient import Coefficient, Status
 from coeflab.law.scaling import Scaling
 from coeflab.law.terms import Term, design

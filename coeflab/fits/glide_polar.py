@@ -29,10 +29,11 @@ from coeflab.core.options import measured, one_of, parse_options, words
 from coeflab.core.texts import input_error
 from coeflab.core.types import dataclass
 from coeflab.fits.results.fit_result import FitResult, result_of
-from coeflab.fits.results.fitted_model import residuals_in_words
+from coeflab.fits.results.lack_of_fit import residuals_in_words
+from coeflab.fits.rows.only_moving import only_moving, without_blanks
 from coeflab.fits.rows.regression import Rows, model_of, variable
-from coeflab.fits.rows.sweeps import only_moving, without_blanks
-from coeflab.fits.statistics.linear_model import fit_linear, t_probability
+from coeflab.fits.statistics.linear_model import fit_linear
+from coeflab.fits.statistics.robust_errors import t_probability
 from coeflab.law.coefficient import Coefficient, Parts, Status
 from coeflab.law.domain import Domain, Extrapolation
 from coeflab.law.symbols import FORCES, LINEAR
@@ -217,9 +218,8 @@ def _check_angles(rows: Rows) -> None:
     if not len(rows.y):
         raise input_error("fits.no_usable_row", column="glide_polar", response=rows.response, campaign=rows.campaign)
     if np.ptp(rows.x["alpha"]) <= NEAR_ZERO:
-        raise InputError(
-            f"one angle of attack, {np.degrees(rows.x['alpha'][0]):.3g} degrees, on every row of {rows.campaign}",
-            "alpha [deg] with several angles, or w [m/s] beside u [m/s]", column="glide_polar",
+        raise input_error(
+            "fits.one_angle_attack", column="glide_polar", degrees=np.degrees(rows.x["alpha"][0]), campaign=rows.campaign,
         )  # fmt: skip
 
 
@@ -355,7 +355,7 @@ def angle_unit_of(printed: Mapping[str, float], result: FitResult) -> AngleUnit:
     if wrong := [s for s in printed if s not in PRINTABLE]:
         raise InputError(shown(wrong[0]), f"one of {', '.join(PRINTABLE)}", column="glide_polar.printed")
     votes: set[str] = set()
-    statements = []
+    statements, inside = [], 0
     for slope in (s for s in PRINTABLE if s in printed):
         if slope not in SLOPES:
             statements.append(at_no_angle(slope, printed[slope], result))
@@ -372,12 +372,12 @@ def angle_unit_of(printed: Mapping[str, float], result: FitResult) -> AngleUnit:
             continue
         unit = min(fitted, key=lambda u: abs(float(np.log(printed[slope] / fitted[u][0]))))
         value, half = fitted[unit]
-        place = "inside" if abs(printed[slope] - value) <= half else "outside"
+        is_inside = abs(printed[slope] - value) <= half
+        inside += is_inside
         votes.add(unit)
         statements.append(
-            f"{slope}: printed {printed[slope]:g} is per {unit}, {place} the fitted {value:.5g} +- {half:.2g}."
+            f"{slope}: printed {printed[slope]:g} is per {unit}, {'inside' if is_inside else 'outside'} the fitted {value:.5g} +- {half:.2g}."
         )
-    inside = sum("inside the fitted" in text for text in statements)
     if len(votes) == 1:
         return AngleUnit(next(iter(votes)), tuple(statements), inside)
     why = "The slopes disagree about the unit of the angle." if votes else "No slope decides the unit of the angle."

@@ -18,10 +18,12 @@ from numpy.typing import NDArray
 
 from coeflab.core.errors import InputError, shown
 from coeflab.core.options import one_of, parse_options, words
+from coeflab.core.texts import input_error
 from coeflab.core.types import Array
 from coeflab.core.wording import finite
 from coeflab.fits.results.fit_result import FitResult, independent, result_of
-from coeflab.fits.results.fitted_model import FittedModel, coefficient_of, residuals_in_words
+from coeflab.fits.results.fitted_model import FittedModel, coefficient_of
+from coeflab.fits.results.lack_of_fit import residuals_in_words
 from coeflab.fits.rows.regression import Rows, model_of
 from coeflab.law.coefficient import Coefficient, Status
 from coeflab.law.scaling import Scaling
@@ -188,11 +190,8 @@ def fit(tables: Sequence[ForceTable], scaling: Scaling, options: Mapping[str, An
     first, tables = tables[0], [t.at_one_density() for t in tables]
     gathered = {a: r for a in dict.fromkeys(chosen.axes) if (r := _rows(tables, a, chosen)) is not None}
     if not gathered:
-        raise InputError(
-            f"no row of {first.campaign} in which only one of {', '.join(chosen.axes)} moves and its force is given",
-            "columns such as u [m/s], X [N] with the other velocities zero", column="linear_quadratic_damping",
-            advice="With angles, or with u zero throughout, the reader completes u from U and every row moves ahead; "
-            "put the six velocities in one table and, beside them, U [m/s] as the speed that primes refer to.",
+        raise input_error(
+            "fits.row_only_one", column="linear_quadratic_damping", campaign=first.campaign, axes=", ".join(chosen.axes),
         )  # fmt: skip
     models: list[FittedModel] = []
     coefficients: list[Coefficient] = []

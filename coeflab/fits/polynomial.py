@@ -13,11 +13,12 @@ from coeflab.core.errors import InputError
 from coeflab.core.options import bounded, measured, one_of, parse_options, words
 from coeflab.core.texts import input_error
 from coeflab.fits.results.fit_result import FitResult, independent, result_of
-from coeflab.fits.results.fitted_model import FittedModel, coefficient_of, in_words, residuals_in_words
+from coeflab.fits.results.fitted_model import FittedModel, coefficient_of, in_words
+from coeflab.fits.results.lack_of_fit import residuals_in_words
+from coeflab.fits.rows.only_moving import AREAS, PRIMES, allowed, area_of, area_settings, named_response, only_moving
 from coeflab.fits.rows.regression import ANGLES, Area, collect, model_of
-from coeflab.fits.rows.sweeps import AREAS, PRIMES, allowed, area_of, area_settings, named_response, only_moving
 from coeflab.fits.rows.too_few import each_with_rows
-from coeflab.fits.statistics.linear_model import sharpened
+from coeflab.fits.statistics.extended_precision import sharpened
 from coeflab.law.coefficient import Coefficient, Status
 from coeflab.law.domain import Extrapolation
 from coeflab.law.scaling import Scaling

@@ -24,14 +24,17 @@ from coeflab.core.texts import input_error, text_of
 from coeflab.core.types import Array
 from coeflab.fits.joint.rows import JointRows, joint_rows, measured, moving
 from coeflab.fits.results.fit_result import FitResult, independent, result_of
-from coeflab.fits.results.fitted_model import FittedModel, coefficient_of, every_third_point, residuals_in_words
+from coeflab.fits.results.fitted_model import FittedModel, coefficient_of
+from coeflab.fits.results.lack_of_fit import residuals_in_words
+from coeflab.fits.results.out_of_sample import every_third_point
 from coeflab.fits.rows.regression import model_of
 from coeflab.fits.rows.too_few import TooFewRowsError, each_with_rows
 from coeflab.fits.statistics.sparse_selection import Optimizer, Selection, describe, library, scaled, select, twins
 from coeflab.law.coefficient import Coefficient
+from coeflab.law.named_terms import symmetric
 from coeflab.law.scaling import Scaling
 from coeflab.law.symbols import COMPONENTS
-from coeflab.law.terms import Term, design, symmetric
+from coeflab.law.terms import Term, design
 from coeflab.tables.force_table import ForceTable, counted_once
 
 summary = "sparse force law: the terms of a library that the data need (pysindy)"

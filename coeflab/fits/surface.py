@@ -1,7 +1,7 @@
 """Tables over two variables: drag, side force, lift and moments over angles of attack and drift.
 
 The additive form C_D(a, b) = C_Da(a) + C_Db(b) - C_D0 is the corrected one: the sum of the two slices that the HUUV
-paper (Talarczyk et al. 2025) prints holds the force at rest twice; `sum_of_slices` shows by how much.
+paper (Talarczyk et al. 2025) prints holds the force at rest twice; a statement of the fit says by how much.
 """
 
 from __future__ import annotations
@@ -15,13 +15,14 @@ import numpy as np
 from coeflab.core.errors import InputError, shown
 from coeflab.core.options import bounded, measured, one_of, parse_options, words
 from coeflab.core.texts import input_error
-from coeflab.core.types import Array
 from coeflab.fits.results.fit_result import FitResult, result_of
-from coeflab.fits.results.fitted_model import FittedModel, in_words, residuals_in_words
-from coeflab.fits.rows import sweeps
+from coeflab.fits.results.fitted_model import FittedModel, in_words
+from coeflab.fits.results.lack_of_fit import residuals_in_words
+from coeflab.fits.rows import only_moving
 from coeflab.fits.rows.regression import MOMENT_COEFFICIENTS, Area, Rows, collect, model_of
 from coeflab.fits.rows.too_few import TooFewRowsError, each_with_rows
-from coeflab.fits.statistics.linear_model import nested_test, sharpened
+from coeflab.fits.statistics.extended_precision import sharpened
+from coeflab.fits.statistics.nested_test import nested_test
 from coeflab.law.domain import Extrapolation
 from coeflab.law.scaling import Scaling
 from coeflab.law.symbols import PORT_STARBOARD
@@ -70,7 +71,7 @@ class Options:
     parity: tuple[str, ...] = words()
     extrapolation: str = one_of("refuse", "refuse", "clamp", "taper")
     area: float = measured(0.0, 0.0, 1e6, "area")
-    area_name: str = one_of(sweeps.PRIMES, *sweeps.AREAS)
+    area_name: str = one_of(only_moving.PRIMES, *only_moving.AREAS)
 
 
 def _sided(chosen: Options) -> list[str]:
@@ -94,9 +95,9 @@ def _parities(chosen: Options, name: str) -> dict[str, str]:
     for word in chosen.parity:
         variable, _, rule = word.partition("=")
         if variable not in chosen.variables or rule not in PARITIES:
-            raise InputError(
-                shown(word), f"variable=rule with one of {', '.join(chosen.variables)} and one of {', '.join(PARITIES)}",
-                column="surface.parity",
+            raise input_error(
+                "fits.variable_rule_one", column="surface.parity", found=shown(word), variables=", ".join(chosen.variables),
+                parities=", ".join(PARITIES),
             )  # fmt: skip
         if rule == "symmetric":
             if sided != [variable]:
@@ -110,12 +111,12 @@ def _fitted(rows: Rows, chosen: Options, form: str, area: Area) -> FittedModel |
     """One form; None where it has no terms or more than the rows can carry."""
     variables = tuple(rows.x)
     rule = _parities(chosen, rows.response)
-    sweeps.check_varies(rows)
+    only_moving.check_varies(rows)
     every = power_terms(variables, chosen.degree, form, rule)
     terms = _mirrored(every, chosen, rows.response)
     if not terms or len(terms) >= len(rows.y):
         return None
-    name = sweeps.named_response(rows.response, area)
+    name = only_moving.named_response(rows.response, area)
     symbols = tuple(f"{name}_{t if t.factors else 0}" for t in terms)
     parities = "".join(f", {r} in {v}" for v, r in rule.items() if r != "full")
     if len(terms) < len(every):
@@ -163,31 +164,6 @@ def compared(additive: FittedModel | None, full: FittedModel | None, rows: Rows)
         f"Additive against full. {sides}. F = {test.ratio:.3g} on {test.between} and {test.within} degrees of freedom; "
         f"probability of such interaction terms by noise alone: {probability}."
     )
-
-
-def sum_of_slices(model: FittedModel, columns: Mapping[str, Array]) -> tuple[Array, Array]:
-    """What the printed sum C_Da(a) + C_Db(b) would give, and its error against the model.
-
-    Each slice is the model with the other variable at zero, so each holds the value at rest C_D0, and the sum holds it
-    twice: for an additive model the error is C_D0 everywhere, for any model it is C_D0 at the origin.
-
-    Parameters
-    ----------
-    model : FittedModel
-        In two variables.
-    columns : mapping of variable to (n,) array
-
-    Returns
-    -------
-    printed, error : (n,) array
-        The sum of the slices, and the sum less the model.
-    """
-    slices = [
-        model.evaluate({v: x if v == selected else np.zeros_like(x) for v, x in columns.items()})[0]
-        for selected in model.domain.variables
-    ]
-    printed = np.asarray(sum(slices), dtype=np.float64)
-    return printed, np.asarray(printed - model.evaluate(columns)[0], dtype=np.float64)
 
 
 def _slices_in_words(model: FittedModel) -> tuple[str, ...]:
@@ -254,24 +230,24 @@ def fit(tables: Sequence[ForceTable], scaling: Scaling, options: Mapping[str, An
     InputError
         No such rows, a response that the tables lack, more terms than rows of every response, or an area without its name.
     """
-    chosen = parse_options(Options, sweeps.without_blanks(options, "parity"), "surface")
+    chosen = parse_options(Options, only_moving.without_blanks(options, "parity"), "surface")
     if len(set(chosen.variables)) != 2 or len(chosen.variables) != 2:
         raise input_error(
             "fits.two_different_ones", column="surface.variables", what=", ".join(chosen.variables) or "none"
         )
-    area = sweeps.area_of(chosen.area, chosen.area_name, scaling)
-    used, notes = sweeps.only_moving(tables, chosen.variables, scaling.length)
-    names = chosen.responses or tuple(n for n in USUAL if sweeps.allowed(used, n, area))
+    area = only_moving.area_of(chosen.area, chosen.area_name, scaling)
+    used, notes = only_moving.only_moving(tables, chosen.variables, scaling.length)
+    names = chosen.responses or tuple(n for n in USUAL if only_moving.allowed(used, n, area))
     if not names:
         raise InputError("no force that the tables give", f"one of {', '.join(USUAL)}", column="surface.responses")
     first = tables[0]
     settings = {
         "variables": " ".join(chosen.variables), "degree": str(chosen.degree), "form": chosen.form,
         "parity": " ".join(chosen.parity) or "port-starboard symmetry", "extrapolation": chosen.extrapolation,
-        **sweeps.area_settings(area),
+        **only_moving.area_settings(area),
     }  # fmt: skip
     models, few = each_with_rows(
-        tuple(dict.fromkeys(names)), lambda n: _model(sweeps.allowed(used, n, area) or used, n, chosen, area, notes), first.campaign
+        tuple(dict.fromkeys(names)), lambda n: _model(only_moving.allowed(used, n, area) or used, n, chosen, area, notes), first.campaign
     )  # fmt: skip
     return result_of(
         "surface",

@@ -33,9 +33,9 @@ from coeflab.fits.rows.sweeps import not_belonging
 from coeflab.fits.statistics.diagnostics import NARROWEST, allowed_miss, scatter_of_replicates
 from coeflab.fits.statistics.linear_model import fit_linear
 from coeflab.law.coefficient import Coefficient, CoefficientSet, Parts, Status
+from coeflab.law.named_terms import SETS, NamedTerm, read_term
 from coeflab.law.scaling import Scaling
 from coeflab.law.symbols import COMPONENTS, MOTIONS, primed
-from coeflab.law.terms import SETS, NamedTerm, read_term
 from coeflab.tables.campaign import PORT_STARBOARD
 from coeflab.tables.campaign import UP_DOWN as ALIKE
 from coeflab.tables.force_table import AT_REST, ForceTable, counted_once

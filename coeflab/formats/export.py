@@ -1,547 +1,42 @@
-"""A parameter file as one target takes it.
-
-What an export loses: the target's own force law against that of the parameter file, over the range that is covered.
-
-What a simulator loses of a parameter file beside terms of its force law, each with its kind.
-"""
+"""Parameter files for simulators: the target's files, and what they lose."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Mapping
-from dataclasses import dataclass
-from enum import StrEnum
-from itertools import product
+import re
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path
+from types import MappingProxyType
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from coeflab.core.errors import InputError
+from coeflab.core.errors import InputError, PluginError, shown
+from coeflab.core.machine import one_thread
 from coeflab.core.missed import suggesting
-from coeflab.core.types import Array, brief, in_angles, locking
-from coeflab.core.wording import file_stem
-from coeflab.law.force_law import ForceLaw, ForceTerm
-from coeflab.law.rigid_body import momentum_force
-from coeflab.law.symbols import COMPONENTS, CONTROLS, MOTIONS, derivative, primed
-from coeflab.vehicle.expected_signs import control_signs
-from coeflab.vehicle.force_law import motion_law, sources_of, steered_terms
-from coeflab.vehicle.inertia import COMPUTED, MEASURED, WaterInertia, known_mass, stated_accelerations, water_inertia
-from coeflab.vehicle.law_at_points import SMALL, LawAtPoints, law_at_points
-from coeflab.vehicle.parameter_file import ParameterFile
-from coeflab.vehicle.parameter_model import ParameterModel
-
-SAME = 1e-6  # a computed and a stated entry, with the digits that files print
-ROLL = "it is used instead; write the vehicle's"
-WAYS = ("surge", "sway", "heave", "roll", "pitch", "yaw")
-
-
-class Kind(StrEnum):
-    """Why something is lost."""
-
-    NOT_HELD = "not held"
-    MISSING = "missing"
-    REPLACED = "replaced"
-    MISMATCH = "mismatch"
-    LEFT_OUT = "left out"
-
-
-@dataclass(frozen=True, slots=True)
-class LossItem:
-    """One loss.
-
-    Attributes
-    ----------
-    kind : Kind
-        Not held: the target has no place for it. Missing: the target needs it and the parameter file has none. Replaced: another
-        value of the same file stands in its place. Mismatch: two parts of the file are those of two bodies. Left out: the target
-        would drive a motion with it that the file damps, or damp one that it drives.
-    what : str
-    """
-
-    kind: Kind
-    what: str
-
-    def __str__(self) -> str:
-        return f"{self.kind}: {self.what}"
-
-
-def common_losses(parameters: ParameterFile, holds: frozenset[str], water: WaterInertia) -> tuple[LossItem, ...]:
-    """What every simulator loses: fitted tables, parts of the vehicle that are not among those it ``holds``, accelerations
-    that are not in the added mass it is given, and an added mass of another body.
-    """
-    tables = () if "tables" in holds else tuple(_table(s.model) for s in sources_of(parameters).tables)
-    unheld = tuple(LossItem(Kind.NOT_HELD, words) for words in (*tables, *_vehicle(parameters, holds)))
-    hull = parameters.added_mass
-    out = [*unheld, *(LossItem(Kind.REPLACED, words) for words in _accelerations(parameters, water))]
-    if hull is not None and hull.body != parameters.body:
-        out.append(
-            LossItem(
-                Kind.MISMATCH,
-                f"the added mass is that of {hull.body}, the coefficients are those of {parameters.body}: the potential parts, and "
-                "the viscous remainders, belong to another shape",
-            )
-        )
-    return tuple(out)
-
-
-def _vehicle(parameters: ParameterFile, holds: frozenset[str]) -> list[str]:
-    """Hydrostatics, thrusters and limits of control surfaces that a target is not given."""
-    out = []
-    h = parameters.hydrostatics
-    if h is not None and "hydrostatics" not in holds:
-        x, y, z = (f"{v:g}" for v in h.centre_of_buoyancy)
-        out.append(
-            f"hydrostatics: {h.volume:g} m^3 at ({x}, {y}, {z}) m; the righting moment, and the difference of weight and buoyancy, "
-            "are left to the simulator"
-        )
-    if parameters.thrusters and "thrusters" not in holds:
-        names = ", ".join(t.name for t in parameters.thrusters)
-        alone = len(parameters.thrusters) == 1
-        out.append(
-            f"thruster {names}: add its force yourself" if alone else f"thrusters {names}: add their forces yourself"
-        )
-    elif "lags" not in holds and (late := [t.name for t in parameters.thrusters if t.lag is not None]):
-        out.append(f"lag of {', '.join(late)}: commands are taken at once")
-    if parameters.surfaces and "surfaces" not in holds:
-        out.append(
-            f"limits and rates of {', '.join(s.control for s in parameters.surfaces)}: angles are taken as given"
-        )
-    elif "rates" not in holds and (turning := [s.control for s in parameters.surfaces if s.rate is not None]):
-        out.append(f"rates of {', '.join(turning)}: angles are taken at once")
-    return out
-
-
-def _table(model: ParameterModel) -> str:
-    over = f"{model.response} over {', '.join(model.names)} ({model.form})"
-    return f"{over}: no force stands in its place; the targets csv and toml contain the table"
-
-
-def _accelerations(parameters: ParameterFile, water: WaterInertia) -> list[str]:
-    """Acceleration derivatives that are not in the added mass, not even in a mean with their mirror image."""
-    stated, hull = stated_accelerations(parameters), parameters.added_mass
-    values = {derivative(c.symbol).text: c for c in parameters.coefficients}
-    out = []
-    for (i, j), (name, entry) in stated.items():
-        mirror = stated.get((j, i), (name, entry))[1]
-        if not entry or min(abs(water.matrix[i, j] - x) for x in (entry, (entry + mirror) / 2.0)) <= SAME * abs(entry):
-            continue
-        given = values[name]
-        share = float(water.matrix[i, j] / entry)
-        place = (
-            f"the added mass of {hull.body} by {hull.method} has {share * (given.value or 0.0):.4g}, {share:.3g} times it"
-            if hull is not None and water.used == COMPUTED
-            else "zero is written instead"
-        )
-        out.append(f"{primed(name)} {given.value:.4g} ({given.origin}) is not used: {place}")
-    return out
-
-
-def missing_mass(parameters: ParameterFile, otherwise: str, roll: str = ROLL) -> tuple[str, ...]:
-    """Mass and moments of inertia that a target of six degrees of freedom needs and the file does not have.
-
-    Parameters
-    ----------
-    parameters : ParameterFile
-    otherwise : str
-        What the target does without them.
-    roll : str
-        What it does where the file has the transverse moment alone.
-    """
-    mass = parameters.mass
-    if mass is None:
-        return (f"mass and moments of inertia: the file has none; {otherwise}",)
-    if mass.inertia is None and mass.inertia_matrix is None:
-        return (f"moments of inertia: the file has none; {otherwise}",)
-    if mass.inertia_matrix is None:
-        return (f"roll inertia: the file has the transverse one alone; {roll}",)
-    return ()
-
-
-def missing_water(parameters: ParameterFile) -> tuple[str, ...]:
-    """Added mass that a target carries and the file does not have."""
-    diagonal = np.diag(water_inertia(parameters).matrix)
-    if not np.any(diagonal):
-        return ("added mass: the file has none; the vehicle accelerates as if in air",)
-    unknown = [way for way, m in zip(WAYS, diagonal, strict=True) if m == 0.0]
-    if parameters.added_mass is None and unknown:
-        return (f"added mass in {', '.join(unknown)}: not in the file; zero is written",)
-    return ()
-
-
-SPEEDS = (0.5, 1.0, 1.5)  # of the file's: a law that holds at one speed only shows
-# Values of a motion: zero and both signs at the least, five where there are fewer than MANY motions to combine.
-POINTS, FEW, MANY = 5, 3, 5
-DEFLECTED = 0.35  # rad, of a control that no campaign covers: 20 deg
-ASSUMED = 0.2  # prime range of a motion that no campaign covers: 11 deg of incidence
-LOSSLESS = 1e-9  # rounding of coefficients that are written with 17 digits and multiplied a few times
-ANGLES = {"asin(v/U)": "v", "asin(w/U)": "w"}
-
-
-@brief
-@dataclass(frozen=True, slots=True, eq=False)
-@locking("worst rms largest size")
-class Apart:
-    """How far a target is from the parameter file, six components each: forces, or rates of u v w p q r.
-
-    Attributes
-    ----------
-    worst, rms : (6,) array
-        Largest and root-mean-square difference; NaN of a component that is not compared.
-    largest, size : (6,) array
-        Largest and root-mean-square value of the file.
-    """
-
-    worst: Array
-    rms: Array
-    largest: Array
-    size: Array
-
-    @property
-    def relative(self) -> Array:
-        """(6,) worst over the largest value of the component; over the largest of its three where that is zero."""
-        scale = self.largest.copy()
-        for group in (slice(0, 3), slice(3, 6)):
-            scale[group] = np.where(scale[group] == 0.0, np.nanmax(scale[group], initial=0.0), scale[group])
-        return np.divide(self.worst, scale, out=np.where(self.worst > 0.0, np.inf, 0.0), where=scale != 0.0)
-
-    @property
-    def furthest(self) -> tuple[int, float]:
-        """The component with the largest relative difference, the first of those that are alike to rounding, and that."""
-        shares = np.nan_to_num(self.relative, nan=0.0, posinf=np.inf)
-        return int(np.argmax(shares >= shares.max() * (1.0 - LOSSLESS))), float(shares.max())
-
-
-def apart(theirs: Array, ours: Array) -> Apart:
-    """The difference of (n, 6) values."""
-    by = np.abs(theirs - ours)
-    return Apart(
-        by.max(axis=0), np.sqrt((by**2).mean(axis=0)), np.abs(ours).max(axis=0), np.sqrt((ours**2).mean(axis=0))
-    )
-
-
-@dataclass(frozen=True, slots=True, eq=False, repr=False)
-class Loss:
-    """What one target makes of one parameter file.
-
-    Attributes
-    ----------
-    target : str
-    not_held : tuple of str
-        Terms that the target cannot represent, in words, symbol first.
-    lost : tuple of LossItem
-        What is lost beside terms.
-    changes : tuple of str
-        What was changed in sign, axes or form, and why.
-    forces : Apart
-        Of the target's force from the file's, over the grid; N and N m.
-    accelerations : Apart or None
-        Of the rates of u v w p q r, m/s^2 and rad/s^2, over the grid and from rest under a push along each axis. NaN for motions
-        whose inertia the file does not state; None where none is compared.
-    not_compared : str
-        Why accelerations are not, or not all, compared, in words; empty where all are.
-    water : WaterInertia
-        The accelerations that the export was asked for.
-    grid : str
-        The velocities that were tried, in words.
-    at_points : tuple of LawAtPoints
-        How far the target's force is from the measured points of the file; empty where the file has none.
-    controls : tuple of str
-        Which controls of the file's coefficients were varied, or that the target holds none of them; then what each does above
-        zero.
-    rare : Apart
-        As ``forces``, astern, broadside and at rest, see `rare_states`.
-    """
-
-    target: str
-    not_held: tuple[str, ...]
-    lost: tuple[LossItem, ...]
-    changes: tuple[str, ...]
-    forces: Apart
-    accelerations: Apart | None
-    not_compared: str
-    water: WaterInertia
-    grid: str
-    at_points: tuple[LawAtPoints, ...] = ()
-    controls: tuple[str, ...] = ()
-    rare: Apart | None = None
-
-    def __repr__(self) -> str:
-        what, share = self.furthest
-        gone = len(self.lost) + len(self.not_held)
-        return in_angles(
-            self, f"{self.target}: {gone or 'nothing'} lost, {what} within {share:.2g}, {len(self.changes)} changes"
-        )
-
-    def __str__(self) -> str:
-        """Everything that is lost or changed, a line each; the loss report among the files has the forces too."""
-        lines = [f"{Kind.NOT_HELD}: {what}" for what in self.not_held] + [str(one) for one in self.lost]
-        return "\n".join([repr(self), *lines, *(f"changed: {words}" for words in self.changes)])
-
-    @property
-    def worst(self) -> Array:
-        """(6,) of the forces, as in `Apart`."""
-        return self.forces.worst
-
-    @property
-    def rms(self) -> Array:
-        """(6,) of the forces, as in `Apart`."""
-        return self.forces.rms
-
-    @property
-    def largest(self) -> Array:
-        """(6,) of the forces, as in `Apart`."""
-        return self.forces.largest
-
-    @property
-    def size(self) -> Array:
-        """(6,) of the forces, as in `Apart`."""
-        return self.forces.size
-
-    @property
-    def relative(self) -> Array:
-        """(6,) of the forces, as in `Apart`."""
-        return self.forces.relative
-
-    @property
-    def furthest(self) -> tuple[str, float]:
-        """The force component, or the rate of a motion, with the largest relative difference, and that."""
-        i, share = self.forces.furthest
-        found = COMPONENTS[i], share
-        if self.accelerations is not None:
-            j, other = self.accelerations.furthest
-            found = (f"d{MOTIONS[j]}/dt", other) if other > max(share, LOSSLESS) else found
-        return found
-
-    @property
-    def worse_than_nothing(self) -> tuple[str, ...]:
-        """Components in which the target is further from the file than no force at all would be, in the root mean square.
-
-        One that is too small to judge is none of them.
-        """
-        least = LOSSLESS * self.largest.max(initial=0.0)
-        judged = zip(COMPONENTS, self.rms, self.size, strict=True)
-        return tuple(c for c, r, s in judged if r > max(s, least) and c not in self.too_small)
-
-    @property
-    def too_small(self) -> tuple[str, ...]:
-        """Components that are next to nothing beside their like in the file, and differ in the target."""
-        largest = self.forces.largest
-        of = np.repeat([float(largest[:3].max()), float(largest[3:].max())], 3)
-        each = zip(COMPONENTS, largest, of, self.relative, strict=True)
-        return tuple(c for c, own, like, share in each if own < SMALL * like and share > LOSSLESS)
-
-    @property
-    def lossless(self) -> bool:
-        """Whether the target holds everything, has what it needs, and forces and accelerations are the file's to rounding."""
-        alike = self.furthest[1] <= LOSSLESS and (self.rare is None or self.rare.furthest[1] <= LOSSLESS)
-        return not self.not_held and not self.lost and alike
-
-
-def covered_grid(parameters: ParameterFile) -> tuple[Array, str]:
-    """Velocities (n, 6) over what the file offers, see `ParameterFile.offered`, at half, full and one and a half times its speed.
-
-    Every combination of a few values of each covered motion; straight motion alone where none is covered. A motion that
-    the file has terms of and no campaign covers, such as a rate from literature, is tried to 0.2 either way.
-    """
-    speed, length = parameters.conditions.speed, parameters.scaling.length
-    ranges: dict[str, tuple[float, float]] = {}
-    for c in parameters.offered:
-        name = ANGLES.get(c.variable, c.variable.removesuffix("'"))
-        if name not in MOTIONS:
-            continue
-        low, high = np.sin([c.low, c.high]) if c.variable in ANGLES else (c.low, c.high)
-        before = ranges.get(name, (low, high))
-        ranges[name] = (min(float(low), before[0]), max(float(high), before[1]))
-    assumed = [n for n in MOTIONS[1:] if n not in ranges and n in _moved_by_terms(parameters)]
-    ranges |= dict.fromkeys(assumed, (-ASSUMED, ASSUMED))
-    names = list(ranges)
-    values = [np.linspace(*ranges[n], POINTS if len(names) < MANY else FEW) for n in names]
-    rows = []
-    for factor in SPEEDS:
-        at = factor * speed
-        for chosen in product(*values):
-            primes = dict(zip(names, chosen, strict=True))
-            side = np.array([primes.get("v", 0.0), primes.get("w", 0.0)])
-            across = float(side @ side)
-            if across > 1.0:
-                continue
-            rates = [primes.get(r, 0.0) * at / length for r in "pqr"]
-            rows.append([at * np.sqrt(1.0 - across), *(at * side), *rates])
-    phrases = [f"{n}' {a:.3g} to {b:.3g}" for n, (a, b) in ranges.items() if n not in assumed]
-    if assumed:
-        bare = ", ".join(f"{n}'" for n in assumed)
-        phrases.append(
-            f"{bare} -{ASSUMED:g} to {ASSUMED:g} (assumed: no data on {'it' if len(assumed) == 1 else 'them'})"
-        )
-    words = ", ".join(phrases) or "straight motion"
-    words = "; ".join((words, *parameters.narrowed))
-    return np.array(rows), f"{words}; U {', '.join(f'{f * speed:.3g}' for f in SPEEDS)} m/s; {len(rows)} states"
-
-
-RARE = "astern, broadside and at rest"
-
-
-def rare_states(parameters: ParameterFile) -> Array:
-    """Velocities (n, 6) that no test covers and every vehicle meets: astern, broadside, at rest.
-
-    Straight astern, to either side, up and down, at each of `SPEEDS`, and at no speed, along with none and either extreme of
-    one motion that `covered_grid` tries; in planes that the file speaks of.
-    """
-    grid, speed = covered_grid(parameters)[0], parameters.conditions.speed
-    fastest = float(np.max(np.linalg.norm(grid[:, :3], axis=1)))
-    extremes = [np.zeros(6)]
-    for k in range(1, 6):
-        at = float(np.max(np.abs(grid[:, k])))
-        extremes += [way * at * np.eye(6)[k] for way in (1.0, -1.0) if at > 0.0]
-    across = [k for k in (1, 2) if np.any(grid[:, k])]
-    ways = [-np.eye(6)[0], *(way * np.eye(6)[k] for k in across for way in (1.0, -1.0)), np.zeros(6)]
-    rows = [
-        factor * (speed * way + extreme * speed / fastest) for factor in SPEEDS for way in ways for extreme in extremes
-    ]
-    return np.unique(np.array(rows) + 0.0, axis=0)
-
-
-def _moved_by_terms(parameters: ParameterFile) -> set[str]:
-    of_terms = {f for c in parameters.coefficients if c.value for f in derivative(c.symbol).factors}
-    return (of_terms | {v.name for m in parameters.models for v in m.variables}) & set(MOTIONS)
-
-
-def loss_of(
-    target: str,
-    parameters: ParameterFile,
-    files: Mapping[str, bytes],
-    force: Callable[[Mapping[str, bytes], Array], Array],
-    not_held: tuple[str, ...],
-    lost: tuple[LossItem, ...],
-    changes: tuple[str, ...],
-    water: WaterInertia,
-    added_mass: Callable[[Mapping[str, bytes]], Array] | None = None,
-    steered: Callable[[Mapping[str, bytes], Array, Array], Array] | None = None,
-) -> Loss:
-    """Evaluate a target's law and added mass, from its own files, beside those of the parameter file, tables and all.
-
-    Parameters
-    ----------
-    target : str
-    parameters : ParameterFile
-    files : mapping of str to bytes
-        What was exported.
-    force : callable
-        The target's files and (n, 6) velocities -> (n, 6) forces, FRD, about the file's reference point, steady motion.
-    not_held : tuple of str
-        Terms that the target has no place for.
-    lost : tuple of LossItem
-        What else of the file it is not given.
-    changes : tuple of str
-        What it is given otherwise, in words.
-    water : WaterInertia
-        The accelerations that the export was asked for.
-    added_mass : callable, optional
-        The target's files -> the (6, 6) added mass that it integrates, FRD, about the file's reference point.
-    steered : callable, optional
-        As ``force``, with (n, 3) controls dr ds db in rad, of a target that holds them.
-    """
-    nu, words = covered_grid(parameters)
-    law, rare = motion_law(parameters)[0], rare_states(parameters)
-    turned = steered_terms(parameters)
-    names = tuple(n for n in CONTROLS if any(n in t.variables for t in turned))
-    if steered is None or not names:
-        phrases: tuple[str, ...] = (
-            (f"controls: {', '.join(names)} not held; no row here has their force",) if names else ()
-        )
-        ours, theirs = law.force(nu), force(files, nu)
-    else:
-        controls, phrases = _deflected(parameters, names, len(nu))
-        nu = np.tile(nu, (len(controls) // len(nu), 1))
-        ours, theirs = law.force(nu, controls), steered(files, nu, controls)
-    if any(t.kind == "table" for t in law.terms):
-        words = f"{words}; the file's force with its fitted tables"
-    compared, why = None, "its exporter does not say what added mass it integrates"
-    if added_mass is not None:
-        compared, why = accelerations_apart(parameters, added_mass(files), nu, theirs, ours)
-    found = law_at_points(
-        parameters.measured,
-        parameters.law_holds,
-        lambda at, _: force(files, at),
-        parameters.scaling.length,
-        controls=False,
-    )
-    return Loss(target, not_held, lost, changes, apart(theirs, ours), compared, why, water, words, found,
-                (*phrases, *control_signs(parameters)), apart(force(files, rare), law.force(rare)))  # fmt: skip
-
-
-def _deflected(parameters: ParameterFile, names: tuple[str, ...], states: int) -> tuple[Array, tuple[str, ...]]:
-    """Controls (n, 3) for every state with none deflected, then with each alone to either side; and that in words.
-
-    A control goes as far as the file's data do, else to `DEFLECTED`; not beyond its limit.
-    """
-    most: dict[str, float] = {s.control: s.limit for s in parameters.surfaces}
-    reach = {n: max([abs(x) for c in parameters.offered if c.variable == n for x in (c.low, c.high)], default=0.0) or DEFLECTED
-             for n in names}  # fmt: skip
-    reach = {n: min(x, most.get(n, x)) for n, x in reach.items()}
-    rows = [np.zeros(3)]
-    rows += [np.where(np.array(CONTROLS) == n, way * reach[n], 0.0) for n in names for way in (-1.0, 1.0)]
-    words = f"controls: each state also with {', '.join(f'{n} -{x:.3g} and {x:.3g} rad' for n, x in reach.items())}, one at a time"
-    return np.repeat(rows, states, axis=0), (words,)
-
-
-def accelerations_apart(
-    parameters: ParameterFile, added: Array, nu: Array, theirs: Array, ours: Array
-) -> tuple[Apart | None, str]:
-    """Rates of u v w p q r under forces (n, 6) at velocities (n, 6), by a target's added mass and by that of the file.
-
-    Six rows more: from rest, pushed along each axis by the file's largest force or moment. Both have the rigid body of the file.
-    Motions whose inertia it does not state are held and have NaN; second stands why.
-    """
-    rigid, known = known_mass(parameters)
-    if not known:
-        return None, "accelerations are not compared: the file states no mass"
-    largest = np.abs(ours).max(axis=0)
-    groups = np.repeat([largest[:3].max(), largest[3:].max()], 3)
-    push = np.diag(np.where(largest > 0.0, largest, np.where(groups > 0.0, groups, 1.0)))
-    own = momentum_force(nu @ rigid.T, nu)
-    at = np.ix_(known, known)
-
-    def rates(mass: Array, forces: Array) -> Array:
-        out = np.full((len(forces) + 6, 6), np.nan)
-        every = np.vstack([forces + own, push])[:, known]
-        out[:, known] = np.linalg.solve((rigid + mass)[at], every.T).T
-        return out
-
-    reference = water_inertia(parameters).matrix
-    try:
-        found = apart(rates(added, theirs), rates(reference, ours))
-    except np.linalg.LinAlgError:
-        return None, "accelerations are not compared: an inertia M + M_A is singular"
-    held = [m for k, m in enumerate(MOTIONS) if k not in known]
-    return found, f"{', '.join(held)}: not compared, the file does not state the inertia" if held else ""
-
-
-def unheld(
-    law: ForceLaw, held: Callable[[ForceTerm], bool], *, ideal: bool, driven: Collection[str] = ()
-) -> tuple[str, ...]:
-    """What of a law a target does not take, in words, in the order of the file.
-
-    Parameters
-    ----------
-    law : ForceLaw
-    held : callable
-        Whether the target takes a term.
-    ideal : bool
-        Whether it has the ideal fluid's products that no measured term speaks of.
-    driven : collection of str
-        Derivatives by controls that it has in fins of its own.
-    """
-    terms = tuple(t.symbol for t in law.terms if t.coefficient != 0.0 and not held(t))
-    names = [
-        f"{COMPONENTS[i]}{MOTIONS[j]}{MOTIONS[k]}"
-        for i, j, k in product(range(6), range(6), range(6))
-        if j <= k and law.ideal[i, j, k] != 0.0
-    ]
-    products = (f"the ideal fluid's {', '.join(names)}",) if names else ()
-    controls = tuple(
-        f"{s} (control or acceleration)" for s in law.left_out if not s.endswith("dot") and s not in driven
-    )
-    return (*terms, *(() if ideal else products), *controls)
+from coeflab.core.texts import input_error
+from coeflab.core.types import brief, in_angles
+from coeflab.core.wording import PREFIX, file_stem
+from coeflab.formats import (
+    EXPORTERS,
+    BuiltExporter,
+    DressedExporter,
+    InertialExporter,
+    PartialExporter,
+    SimulatorExporter,
+    SteeredExporter,
+)
+from coeflab.formats.lacking_law import found_in, lacking_tables, without_law
+from coeflab.formats.loss import Loss, loss_of
+from coeflab.formats.loss_tables import as_text, in_short
+from coeflab.formats.missing_parts import Kind, LossItem, common_losses
+from coeflab.vehicle.inertia import MEASURED, converted, water_inertia, with_accelerations
+
+if TYPE_CHECKING:
+    from coeflab.bodies.shape import Shape
+    from coeflab.vehicle.parameter_file import ParameterFile
+
+LONGEST = 255
 
 
 @suggesting
@@ -631,3 +126,211 @@ class PlannedExport:
     def key(self, name: str) -> str:
         """Dotted name of a key."""
         return f"{self.place}.{name}"
+
+
+@one_thread()
+def export(
+    parameters: ParameterFile, target: str, accelerations: str = MEASURED, *, accept_loss: bool = False
+) -> Export:
+    """Render a parameter file for a target and evaluate the target's own law from the rendered files.
+
+    Parameters
+    ----------
+    parameters : ParameterFile
+    target : str
+    accelerations : {"measured", "computed"}
+        As for `coeflab.motion.simulation.simulate`. The loss is counted from the file with its measured ones.
+    accept_loss : bool
+        Write without the terms that the target would do the wrong way round, and say which, where it has such.
+
+    Raises
+    ------
+    PluginError
+        No exporter has that name.
+    InputError
+        The target cannot hold the file at all, or not with its signs and ``accept_loss`` is false, or a file of it would leave the
+        folder.
+    """
+    plugin = EXPORTERS.load(target)
+    water = water_inertia(parameters, accelerations)
+    given = with_accelerations(parameters, accelerations)
+    with EXPORTERS.guarded(target):
+        files = dict(plugin.render(given if isinstance(plugin, SimulatorExporter) else parameters))
+    _refuse_places(files, parameters, target)
+    if not isinstance(plugin, SimulatorExporter):
+        files |= _remarks(files, parameters, target, found_in(parameters))
+        return Export(parameters.name, target, files, None, plugin.citations)
+    left = _left_out(plugin, given, accept_loss)
+    missing = tuple(LossItem(Kind.MISSING, words) for words in plugin.missing(given))
+    losses = (*left, *missing, *common_losses(parameters, plugin.holds, water))
+    changes = (
+        *dict.fromkeys((*plugin.changes(given), *water.warnings)),
+        *without_law(parameters),
+        *converted(parameters),
+        *_renamed(files, parameters),
+    )
+    found = loss_of(
+        target, parameters, files, plugin.force, plugin.not_held(given), losses, changes, water,
+        plugin.added_mass if isinstance(plugin, InertialExporter) else None,
+        plugin.steered_force if isinstance(plugin, SteeredExporter) else None,
+    )  # fmt: skip
+    lacking = () if "tables" in plugin.holds else lacking_tables(parameters)
+    if isinstance(plugin, BuiltExporter):
+        with EXPORTERS.guarded(target):
+            files = dict(plugin.built(files))
+    files |= _remarks(files, parameters, target, (*lacking, *found_in(parameters)))
+    files[f"{file_stem(parameters.name)}.{target}.loss.txt"] = as_text(found, given).encode()
+    return Export(parameters.name, target, files, found, plugin.citations)
+
+
+def _remarks(
+    files: Mapping[str, bytes], parameters: ParameterFile, target: str, due: Sequence[str]
+) -> dict[str, bytes]:
+    """What files have to say of their numbers, beside those of a format that has no place for it."""
+
+    def letters(text: str) -> str:
+        return re.sub(r"[\W_]+", "", text)
+
+    written = letters("\n".join(content.decode(errors="ignore") for content in files.values()))
+    found = [words for words in due if letters(words) not in written]
+    if not found:
+        return {}
+    return {f"{file_stem(parameters.name)}.{target}.remarks.txt": ("\n".join(found) + "\n").encode()}
+
+
+def _left_out(plugin: SimulatorExporter, given: ParameterFile, accept_loss: bool) -> tuple[LossItem, ...]:
+    """What the target's files are without, for it would be of the wrong sign there.
+
+    Raises
+    ------
+    InputError
+        Something is, and no loss is accepted.
+    """
+    found = plugin.left_out(given) if isinstance(plugin, PartialExporter) else None
+    if found is None:
+        return ()
+    why, words = found
+    if not accept_loss:
+        advice = f"{why.advice} Or accept the loss: it is written without, and the loss report says of what."
+        raise InputError(why.found, why.expected, file=why.file, column=why.column, advice=advice)
+    return tuple(LossItem(Kind.LEFT_OUT, phrases) for phrases in words)
+
+
+def _refuse_places(files: Mapping[str, bytes], parameters: ParameterFile, target: str) -> None:
+    """Refuse file names that lead out of the folder or that no file can bear."""
+    for name in files:
+        if "/" in name or "\\" in name or name.startswith(".") or not name.isprintable() or len(name) > LONGEST:
+            theirs = parameters.name in name
+            raise input_error(
+                "formats.file_of_another_name", column="name" if theirs else f"exporter.{target}", name=shown(name),
+                wanted="a name that files can be given" if theirs else "a plain file name",
+            )  # fmt: skip
+
+
+def _renamed(files: Mapping[str, bytes], parameters: ParameterFile) -> tuple[str, ...]:
+    """What files are called where it is not the parameter file's name."""
+    stems = sorted({name.partition(".")[0] for name in files})
+    if parameters.name in stems:
+        return ()
+    return (
+        f"files are called {', '.join(stems)}: of the name {shown(parameters.name)} letters and digits are kept, at most 63, and "
+        f"{PREFIX} stands before a digit or a word that the target or a file system reserves",
+    )
+
+
+def parameter_files_rendered(several: Iterable[ParameterFile]) -> dict[str, bytes]:
+    """Every parameter file and its tables as CSV, by name. Nothing is written."""
+    files: dict[str, bytes] = {}
+    for parameters in several:
+        files[f"{file_stem(parameters.name)}.parameters.json"] = parameters.to_json()
+        files.update(EXPORTERS.load("csv").render(parameters))
+    return files
+
+
+def refuse_unknown(planned: Sequence[PlannedExport]) -> None:
+    """Refuse targets without an exporter before anything is computed.
+
+    Raises
+    ------
+    PluginError
+        Names the plan's file and key.
+    """
+    for p in planned:
+        try:
+            EXPORTERS.load(p.to)
+        except PluginError as why:
+            raise PluginError(f"{p.file}, {shown(p.key('to'))}: {why}" if p.file else str(why)) from None
+
+
+def placed(exports: Iterable[Export]) -> dict[str, bytes]:
+    """The files of exports beside their parameter files, by place."""
+    return {f"{e.folder}/{name}" if e.folder else name: content for e in exports for name, content in e.files.items()}
+
+
+def exports_of(
+    planned: Sequence[PlannedExport],
+    files: Iterable[ParameterFile],
+    progress: Callable[[str], None],
+    shapes: Mapping[str, Shape] = MappingProxyType({}),
+) -> tuple[tuple[Export, ...], tuple[Refused, ...]]:
+    """Every parameter file of a study for every target of its plan; what is refused does not keep the rest from being made.
+
+    Parameters
+    ----------
+    planned : sequence of PlannedExport
+    files : iterable of ParameterFile
+    progress : callable
+        Takes what is being done, in words.
+    shapes : mapping of str to Shape, optional
+        By the name of the parameter file: what a target shows, where the added mass is that of the file's own body.
+
+    Returns
+    -------
+    tuple of Export
+    tuple of Refused
+        A target cannot hold a file, or not all of it and the plan does not accept that.
+    """
+    out: list[Export] = []
+    refused: list[Refused] = []
+    for p, parameters in ((p, parameters) for p in planned for parameters in files):
+        try:
+            out.append(_dressed(_accepted(p, parameters), parameters, shapes))
+        except InputError as why:
+            refused.append(Refused(parameters.name, p.to, why))
+            progress(f"refused {parameters.name} for {p.to}")
+        else:
+            progress(f"exported {parameters.name} for {p.to}")
+    return tuple(out), tuple(refused)
+
+
+def _dressed(result: Export, parameters: ParameterFile, shapes: Mapping[str, Shape]) -> Export:
+    """With what the target shows of the body, where its shape is known and the file's."""
+    plugin, shape, hull = EXPORTERS.load(result.target), shapes.get(parameters.name), parameters.added_mass
+    if not isinstance(plugin, DressedExporter) or shape is None or hull is None or hull.body != parameters.body:
+        return result
+    return replace(result, files=plugin.dressed(result.files, shape, np.array(parameters.reference_point.point)))
+
+
+def _accepted(p: PlannedExport, parameters: ParameterFile) -> Export:
+    """The export, if the plan accepts what it loses.
+
+    Raises
+    ------
+    InputError
+        Names the plan's file and key.
+    """
+    try:
+        result = export(parameters, p.to, p.accelerations, accept_loss=p.accept_loss and not p.strict)
+    except InputError as why:
+        found = f"{why.found} in {parameters.name} for {p.to}"
+        raise InputError(found, why.expected, file=p.file, column=p.key("to"), advice=why.advice) from None
+    if result.loss is not None and not result.lossless and (p.strict or not p.accept_loss):
+        raise InputError(
+            f"{p.to} cannot hold all of {parameters.name}: {in_short(result.loss)}",
+            "a target that holds everything" if p.strict else "accept_loss = true, once the loss has been read",
+            file=p.file,
+            column=p.key("strict" if p.strict else "accept_loss"),
+            advice=f"The study and its parameter file are written without this export; `coeflab export FILE --to {p.to}` "
+            "prints the whole loss.",
+        )
+    return result

@@ -17,10 +17,10 @@ import numpy as np
 
 from coeflab.core.types import Array, brief
 from coeflab.core.units import STANDARD_GRAVITY
-from coeflab.law.added_mass import definiteness
+from coeflab.law.definiteness import definiteness
 from coeflab.law.force_law import AHEAD, ForceLaw, ForceTerm
+from coeflab.law.named_terms import canonical
 from coeflab.law.symbols import COMPONENTS, CONTROLS, MOTIONS, derivative
-from coeflab.law.terms import canonical
 from coeflab.vehicle.force_law import force_law, ideal_terms, motion_law, sources_of
 from coeflab.vehicle.inertia import centre_of_gravity, water_inertia
 from coeflab.vehicle.law_at_points import motion_of

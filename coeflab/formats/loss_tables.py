@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING
 
 from coeflab.core.table import ABSENT, Table, coefficient, number
 from coeflab.core.texts import remark
-from coeflab.formats.export import LOSSLESS, RARE, Kind
+from coeflab.formats.loss import LOSSLESS
+from coeflab.formats.missing_parts import Kind
 from coeflab.law.added_mass import potential_part
 from coeflab.law.symbols import COMPONENTS, MOTIONS
 from coeflab.vehicle.force_law import points_of
@@ -16,9 +17,11 @@ from coeflab.vehicle.inertia import MEASURED, stated_accelerations
 from coeflab.vehicle.parameter_file import ParameterFile
 
 if TYPE_CHECKING:
-    from coeflab.formats.export import Apart, Loss
+    from coeflab.formats.loss import Apart, Loss
     from coeflab.vehicle.inertia import WaterInertia
     from coeflab.vehicle.law_at_points import LawAtPoints
+
+RARE = "astern, broadside and at rest"
 
 NAMED = 3
 MOST_APART = 1000.0  # per cent of a force; a larger difference is not told from this one

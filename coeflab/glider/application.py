@@ -1,5 +1,5 @@
 """Gliders: steady glides, cycles, motion in space."""
 
 COMMANDS = {"glide": "Motion", "glider": "Motion"}
-FILES = {"glider": "glider.GliderFile"}
+FILES = {"glider": "glider_file.GliderFile"}
 PLUGINS = {"coeflab.simulators": "simulators"}

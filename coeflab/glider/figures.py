@@ -11,7 +11,7 @@ from matplotlib.lines import Line2D
 from coeflab.core.types import Array
 from coeflab.glider.glide import GlideRun, SteadyGlide
 from coeflab.glider.glider import Glider
-from coeflab.glider.motion import glide
+from coeflab.glider.steady_glide import glide
 from coeflab.report.document import Figure
 from coeflab.report.figures import series as plotted
 from coeflab.report.figures.palette import COLOURS

@@ -14,7 +14,8 @@ from coeflab.core.machine import one_thread
 from coeflab.core.text.csv_rows import csv_text
 from coeflab.core.types import brief
 from coeflab.glider.glide import GlideRun, SteadyGlide, steady_glides, steady_spirals
-from coeflab.glider.glider import GliderPhase, gliders_at
+from coeflab.glider.glider import GliderPhase
+from coeflab.glider.glider_file import gliders_at
 from coeflab.glider.motion import Setting
 from coeflab.glider.space import Spiral
 from coeflab.motion.simulators import SIMULATORS

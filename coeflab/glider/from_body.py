@@ -9,6 +9,7 @@ import numpy as np
 from coeflab.bodies.body import Body
 from coeflab.bodies.mass_model import MassPart
 from coeflab.core.errors import InputError, shown
+from coeflab.core.texts import input_error
 from coeflab.core.units import STANDARD_GRAVITY
 from coeflab.fits.glide_polar import fit
 from coeflab.glider.glider import BuoyancyEngine, Glider, GliderMass, GliderPhase, SlidingMass, StatedPolar
@@ -75,9 +76,7 @@ def polar_of(table: ForceTable, body: Body, ordered: Ordered) -> StatedPolar:
     elif table.datum.id == "cb":
         table = table.about(np.zeros(3))
     else:
-        raise InputError(
-            f"moments counted from {table.datum}", f"from {body.datum}, as the body, or from cb", column="axes.datum"
-        )
+        raise input_error("glider.moments_counted", column="axes.datum", datum=table.datum, datum_2=body.datum)
     found = fit([table], table.scaling, {"angle_unit": "rad"})
     values: dict[str, float] = {}
     for m in found.models:
@@ -114,9 +113,8 @@ def glider_of(name: str, table: ForceTable, body: Body, added: AddedMass, ordere
         raise InputError(f"{body.name} without [[mass]]", "its parts with mass and place", column="mass")
     displaced = model.density * model.volume
     if abs(model.mass / displaced - 1.0) > NEUTRAL:
-        raise InputError(
-            f"{model.mass:.5g} kg that displaces {displaced:.5g} kg", f"the same within {100.0 * NEUTRAL:g} %", column="mass",
-            advice="[[mass]] with ballast = true makes up for it.",
+        raise input_error(
+            "glider.kg_displaces_kg", column="mass", mass=model.mass, displaced=displaced, value=100.0 * NEUTRAL,
         )  # fmt: skip
     slides = next((p for p in model.parts if p.name == ordered.sliding), None)
     if ordered.sliding and slides is None:

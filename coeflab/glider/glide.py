@@ -8,8 +8,9 @@ import numpy as np
 
 from coeflab.core.types import Array, brief
 from coeflab.glider.glider import Glider, GliderPhase
-from coeflab.glider.motion import balanced, eigenvalues, glide
+from coeflab.glider.motion import eigenvalues
 from coeflab.glider.space import Spiral, steady_spiral
+from coeflab.glider.steady_glide import balanced, glide
 from coeflab.motion.trajectory import Ended, Trajectory
 
 SETTLED = 0.01  # of the steady speed

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from coeflab.core.table import ABSENT, Table, number
-from coeflab.glider.motion import shallowest
+from coeflab.glider.steady_glide import shallowest
 
 if TYPE_CHECKING:
     from coeflab.glider.glide import GlideRun, SteadyGlide

@@ -10,7 +10,7 @@ from matplotlib.figure import Figure as Drawing
 from matplotlib.lines import Line2D
 
 from coeflab.core.table import coefficient, plus_minus
-from coeflab.identify.identification import Identified, IdentifiedTerm, Outcome
+from coeflab.identify.identified import Identified, IdentifiedTerm, Outcome
 from coeflab.identify.thruster import BenchTest
 from coeflab.report.document import Figure, Panel
 from coeflab.report.figures.laws import Plot, Trace, laws_figure

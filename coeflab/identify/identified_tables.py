@@ -8,7 +8,7 @@ from coeflab.core.table import ABSENT, Table, coefficient, number, with_u95
 from coeflab.core.text.csv_rows import csv_text
 
 if TYPE_CHECKING:
-    from coeflab.identify.identification import Identified, IdentifiedTerm
+    from coeflab.identify.identified import Identified, IdentifiedTerm
 
 PER_CENT = 100.0
 

@@ -8,17 +8,17 @@ from pathlib import Path
 
 import numpy as np
 
-from coeflab.core.errors import InputError
 from coeflab.core.limits import REPLICATES
 from coeflab.core.machine import one_thread
 from coeflab.core.options import bounded, measured, one_of, parse_options, text, words
-from coeflab.core.texts import remark
+from coeflab.core.texts import input_error, remark
 from coeflab.fits.sparse import scaled_optimizer
+from coeflab.identify.candidate_terms import candidate_terms
+from coeflab.identify.candidates import ALONG
 from coeflab.identify.force_balance import (
     NOISE,
     STRETCH,
     Candidate,
-    candidate_terms,
     centres,
     correlated,
     differenced,
@@ -27,21 +27,8 @@ from coeflab.identify.force_balance import (
     stretches,
     weak,
 )
-from coeflab.identify.identification import (
-    ALONG,
-    FEWEST_STRETCHES,
-    HOW,
-    Balanced,
-    Found,
-    Identified,
-    IdentifiedTerm,
-    Outcome,
-    Products,
-    exchangeable,
-    identify,
-    multiples,
-    together_in_words,
-)
+from coeflab.identify.identification import FEWEST_STRETCHES, Found, Products, exchangeable, identify, multiples
+from coeflab.identify.identified import HOW, Balanced, Identified, IdentifiedTerm, Outcome, together_in_words
 from coeflab.identify.series import ANGLES, MotionSeries, read_series
 from coeflab.law.added_mass import potential_part
 from coeflab.law.symbols import COMPONENTS, CONTROLS, MOTIONS, primed
@@ -127,9 +114,9 @@ def _long_enough(series: Sequence[MotionSeries], files: Sequence[Path], half: fl
     """Raise where there are too few windows to draw stretches of time from."""
     count = sum(len(np.unique(stretches(centres(s, half), half))) for s in series)
     if count < FEWEST_STRETCHES:
-        raise InputError(
-            f"{count} stretches of {STRETCH * half:.3g} s with rows enough", f"{FEWEST_STRETCHES} or more",
-            file=files[0], column="identify.window", advice="Record longer or more often, or give another window.",
+        raise input_error(
+            "identify.stretches_rows_enough", files[0], column="identify.window", count=count, stretch=STRETCH * half,
+            fewest_stretches=FEWEST_STRETCHES,
         )  # fmt: skip
 
 
@@ -145,10 +132,7 @@ def _attitude_known(
     for s, file in zip(series, files, strict=True):
         lacking = [a for a in ANGLES if a not in s.given]
         if lacking:
-            raise InputError(
-                f"no column {' or '.join(lacking)}", "roll and pitch, as weight and buoyancy turn with them",
-                file=file, line=1, column=lacking[0],
-            )  # fmt: skip
+            raise input_error("identify.roll_pitch_weight", file, 1, lacking[0], lacking=" or ".join(lacking))
 
 
 def _half(series: Sequence[MotionSeries], body: Vehicle) -> float:

@@ -11,7 +11,7 @@ from coeflab.core.errors import InputError, UnitsError, shown
 from coeflab.core.finding import Finding, Severity
 from coeflab.core.limits import LARGEST_NUMBER
 from coeflab.core.text.delimited import Cells, read_cells, require_unit
-from coeflab.core.texts import words
+from coeflab.core.texts import input_error, words
 from coeflab.core.types import Array, brief, locking
 from coeflab.core.units import Header, factor, parse_header
 from coeflab.identify.kinematics import FORWARD, by_positions, contradicted, sideways
@@ -111,9 +111,7 @@ def read_series(path: Path, vehicle: Vehicle, columns: str = "") -> MotionSeries
     for k, name in enumerate(names):
         if _dimension(name, vehicle) and name in names[:k]:
             text = cells.headers[k].text
-            raise InputError(
-                f"{shown(text)} beside another {name}", "one of them", file=path, line=cells.first_line - 1, column=text
-            )
+            raise input_error("identify.beside_another", path, cells.first_line - 1, text, text=shown(text), name=name)
     by_places = "u" not in names and set(PLACES) <= set(names)
     for needed, example in (("t", "t [s]"), ("u", "u [m/s]")):
         if needed not in names and not (needed == "u" and by_places):
@@ -161,9 +159,8 @@ def _named(path: Path, columns: str) -> tuple[Cells, dict[str, float]]:
     names = [name.strip() for name in columns.split(",")]
     table = raw(path, {"header": -1})
     if len(names) != len(table.columns):
-        raise InputError(
-            f"{len(names)} names for {len(table.columns)} columns", "as many names as columns, - for one that is passed over", file=path,
-            column="--columns",
+        raise input_error(
+            "identify.names_columns", path, column="--columns", count_of_names=len(names), count_of_columns=len(table.columns),
         )  # fmt: skip
     used = [
         (parse_header(name.removeprefix("-").strip()), column)
@@ -223,17 +220,17 @@ def _values(cells: Cells, header: Header, kind: str, vehicle: Vehicle, name: str
     wild = np.flatnonzero(np.abs(values) > LARGEST_NUMBER)
     if len(wild):
         row = int(wild[0])
-        raise InputError(
-            shown(cells.texts(header.name)[row]), f"a finite number of at most {LARGEST_NUMBER:g} in SI", file=cells.file,
-            line=cells.line(row), column=header.text,
+        raise input_error(
+            "identify.finite_number_most", cells.file, cells.line(row), header.text, found=shown(cells.texts(header.name)[row]),
+            largest_number=LARGEST_NUMBER,
         )  # fmt: skip
     wrong = np.flatnonzero(~np.isfinite(values))
     if len(wrong):
         row = int(wrong[0])
         text = cells.texts(header.name)[row]
-        raise InputError(
-            shown(text) if text else "a blank cell", "a finite number in every row", file=cells.file,
-            line=cells.line(row), column=header.text, advice="Remove the row; steps need not be even.",
+        raise input_error(
+            "identify.finite_number_every", cells.file, cells.line(row), header.text,
+            found=shown(text) if text else "a blank cell",
         )  # fmt: skip
     return values
 
@@ -245,14 +242,11 @@ def _rising(time: Array, cells: Cells) -> None:
     if len(wrong):
         row = int(wrong[0]) + 1
         found = "twice the time" if time[row] == time[row - 1] else "a time before the last one"
-        raise InputError(
-            f"{found}, {time[row]:.9g} s", "times that rise", file=cells.file, line=cells.line(row), column=header,
-            advice="Sort the rows by time, and keep one row a time.",
-        )  # fmt: skip
+        raise input_error("identify.times_rise", cells.file, cells.line(row), header, found=found, time=time[row])
     if len(time) < FEWEST:
-        raise InputError(
-            f"{len(time)} rows", f"{FEWEST} or more", file=cells.file, line=cells.line(len(time) - 1), column=header,
-            advice="Record longer, or more often.",
+        raise input_error(
+            "identify.record_longer_more", cells.file, cells.line(len(time) - 1), header, count_of_time=len(time),
+            fewest=FEWEST,
         )  # fmt: skip
 
 

@@ -16,6 +16,7 @@ import numpy as np
 from coeflab.core.errors import InputError, UnitsError, shown
 from coeflab.core.table import ABSENT, Table, number
 from coeflab.core.text.delimited import Cells, read_cells, require_unit
+from coeflab.core.texts import input_error
 from coeflab.core.types import Array, brief, locking
 from coeflab.core.units import factor
 from coeflab.vehicle.parameter_file import ParameterFile
@@ -159,9 +160,9 @@ def bench_test(files: Sequence[Path], parameters: ParameterFile, name: str, wind
         means += [m for m, _ in found]
         counts += [n for _, n in found]
     if len(means) < FEWEST_STRETCHES:
-        raise InputError(
-            f"{len(means)} steady stretches of {FEWEST_ROWS} rows or more", f"{FEWEST_STRETCHES} or more", file=files[0],
-            column="--window", advice="Hold each command longer, or give a shorter --window.",
+        raise input_error(
+            "identify.steady_stretches_rows", files[0], column="--window", count_of_means=len(means), fewest_rows=FEWEST_ROWS,
+            fewest_stretches=FEWEST_STRETCHES,
         )  # fmt: skip
     table = np.array(means)
     table[np.abs(table[:, 0]) <= STEADY * np.max(np.abs(table[:, 0])), :2] = (
@@ -250,10 +251,7 @@ def _side(load: str, found: BenchTest, sign: float) -> tuple[CurveSegment, str]:
     slope = float(squares @ values / (squares @ squares))
     side = "ahead" if sign > 0.0 else "astern"
     if sign * slope <= 0.0:
-        raise InputError(
-            f"a {load} {side} of {slope:.3g} n^2", "one with the sign of its command", column="--thruster",
-            advice="Give command, thrust and torque of a rotor that turns astern below zero.",
-        )  # fmt: skip
+        raise input_error("identify.one_sign_command", column="--thruster", load=load, side=side, slope=slope)
     end = float(np.max(np.abs(found.command[at])))
     low, high = (0.0, end) if sign > 0.0 else (-end, 0.0)
     stretches, unit = int(np.count_nonzero(at)), LOADS[load][3].replace("*", " ")
@@ -272,9 +270,8 @@ def _law(load: str, thruster: ParameterThruster, design: Array, values: Array) -
         found, _, rank, _ = np.linalg.lstsq(columns, values, rcond=None)
         freedom = len(values) - int(rank)
         if rank < columns.shape[1] or freedom < 1:
-            raise InputError(
-                f"{len(np.unique(np.round(columns[:, 0], 6)))} different commands", "more than the law has factors",
-                column="--thruster", advice="Step the command through more values.",
+            raise input_error(
+                "identify.different_commands", column="--thruster", count_of_unique=len(np.unique(np.round(columns[:, 0], 6))),
             )  # fmt: skip
         left = values - columns @ found
         variance = float(left @ left) / freedom
@@ -343,8 +340,8 @@ def _column(
     if header is None:
         if optional:
             return np.full(len(cells), np.nan)
-        raise InputError(
-            f"no column {' or '.join(names)}", f'a column "{example}"', file=cells.file, line=line, column=names[0]
+        raise input_error(
+            "identify.unit_of_column", cells.file, line, names[0], names=" or ".join(names), example=example
         )
     written = require_unit(header, cells.file, line, example)
     if unit and written != unit:
@@ -354,7 +351,5 @@ def _column(
     values = cells.numbers(header.name) * (1.0 if unit else factor(written, dimension))
     wrong = np.flatnonzero(~np.isfinite(values))
     if len(wrong):
-        raise InputError(
-            "a blank cell", "a number in every row", file=cells.file, line=cells.line(int(wrong[0])), column=header.text
-        )
+        raise input_error("identify.blank_cell", cells.file, cells.line(int(wrong[0])), header.text)
     return np.asarray(values)

@@ -15,10 +15,11 @@ from coeflab.core.finding import Finding
 from coeflab.core.machine import one_thread
 from coeflab.core.table import Check
 from coeflab.core.text.csv_rows import csv_text
-from coeflab.core.texts import remark
+from coeflab.core.texts import input_error, remark
 from coeflab.core.types import Array, brief
 from coeflab.core.wording import file_stem
-from coeflab.identify.output_error import Estimate, Problem, by_likelihood, estimate, problem
+from coeflab.identify.output_error import Estimate, by_likelihood, estimate
+from coeflab.identify.output_problem import Problem, problem
 from coeflab.identify.tuning import (
     TunedParameter,
     TunedQuantity,
@@ -226,9 +227,8 @@ def _settles(plan: TuningPlan, p: Problem) -> None:
     wrong = ~np.isfinite(p.outputs(p.start)) & np.isfinite(p.measured)
     for at in np.flatnonzero(wrong):
         case, quantity = divmod(int(at), len(plan.cases.names))
-        raise InputError(
-            f"no {plan.cases.names[quantity]} of the untuned vehicle under these commands", "a steady motion that has one",
-            file=plan.cases.file, line=plan.cases.lines[case], advice="Leave the cell blank, or start from other values.",
+        raise input_error(
+            "identify.untuned_vehicle_under", plan.cases.file, plan.cases.lines[case], names=plan.cases.names[quantity],
         )  # fmt: skip
 
 

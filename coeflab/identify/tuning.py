@@ -17,15 +17,17 @@ from coeflab.core.table import number, plus_minus
 from coeflab.core.types import Array, brief, locking
 from coeflab.core.version import VERSION
 from coeflab.core.wording import finite, listed
-from coeflab.identify.output_error import Estimate, Problem
+from coeflab.identify.output_error import Estimate
+from coeflab.identify.output_problem import Problem
 from coeflab.identify.tuning_plan import Place, TuningPlan, moved
 from coeflab.law.added_mass import potential_part
 from coeflab.law.coefficient import Parts, Status
 from coeflab.law.symbols import COMPONENTS, MOTIONS, derivative
 from coeflab.vehicle.force_law import points_of
-from coeflab.vehicle.parameter_file import SCHEMA_VERSION, ParameterFile
+from coeflab.vehicle.parameter_file import ParameterFile
 from coeflab.vehicle.parameter_model import ParameterModel
 from coeflab.vehicle.parameter_parts import ParameterCovariance
+from coeflab.vehicle.schema_versions import SCHEMA_VERSION
 
 OK, SIGN, PRIOR, BOUND, OPEN = "ok", "sign_open", "prior_only", "at_bound", "not_identifiable"
 STATUSES = {

@@ -21,6 +21,7 @@ from coeflab.core.errors import InputError, shown
 from coeflab.core.files import named
 from coeflab.core.text.delimited import Cells, read_cells, require_unit
 from coeflab.core.text.toml import TomlFile, read_toml
+from coeflab.core.texts import input_error
 from coeflab.core.types import Array, brief, locking
 from coeflab.core.units import factor
 from coeflab.law.symbols import COMPONENTS, CONTROLS, MOTIONS, derivative
@@ -425,9 +426,7 @@ class TuningFile(takes.Declaration):
     def check(self) -> None:
         """Something is free."""
         if not self.free:
-            raise InputError(
-                "nothing", "at least one [[free]]", column="free", advice="Name a number of the parameter file."
-            )
+            raise input_error("identify.least_one_free", column="free")
 
 
 def read_tuning_plan(path: Path) -> TuningPlan:
@@ -489,9 +488,8 @@ def _cases(keys: MeasuredKeys, p: ParameterFile, toml: TomlFile) -> tuple[Steady
         if h.name in keys.where or h.name in keys.ignore:
             continue
         if h.name not in known:
-            raise InputError(
-                f"the column {shown(h.name)}", f"one of {', '.join(known)}", file=table, line=cells.first_line - 1,
-                advice='List it under "ignore", or choose rows by it under "where".',
+            raise input_error(
+                "identify.list_under_ignore", table, cells.first_line - 1, name=shown(h.name), known=", ".join(known),
             )  # fmt: skip
         unit = require_unit(h, table, cells.first_line - 1, "u [m/s]")
         columns[h.name] = _column(cells, h.name, unit, thrusters)[rows]

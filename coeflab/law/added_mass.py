@@ -1,8 +1,4 @@
-"""The added-mass matrix of a body.
-
-Added mass of a body from that of its parts, and whether a matrix can be an added mass at all.
-
-What an ideal fluid gives to a velocity derivative: total = potential + viscous.
+"""The added-mass matrix of a body, and its part of a velocity derivative: total = potential + viscous.
 
 A measured force in steady motion holds every entry of -C_A(nu) nu: the Munk moment in Nv and Mw, and shares of Yr, Nr, Zq,
 Mq, Xvr and others. A simulator that adds C_A(nu) itself must be given the viscous part alone.
@@ -10,7 +6,6 @@ Mq, Xvr and others. A simulator that adds C_A(nu) itself must be given the visco
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from typing import Annotated, NamedTuple
 
@@ -22,76 +17,12 @@ from coeflab.core.cards import html_by
 from coeflab.core.errors import InputError
 from coeflab.core.missed import was_method
 from coeflab.core.stored import Means, Name, Positive, Square6, Words, stored
-from coeflab.core.types import Array, in_angles, locked, locking
+from coeflab.core.types import in_angles, locked, locking
+from coeflab.law.definiteness import Definiteness, definiteness
 from coeflab.law.rigid_body import ideal_quadratics
 from coeflab.law.scaling import Scaling
 from coeflab.law.symbols import COMPONENTS, MOTIONS, derivative
-from coeflab.law.transforms import moved, turned, velocity_transfer
-
-ROUNDING = 1e-9
-
-
-def composed(matrices: Sequence[Array], rotations: Sequence[Array], centres: Sequence[Array], point: Array) -> Array:
-    """Sum over parts, each given about its own centre along its own axes, about a common point.
-
-    Parameters
-    ----------
-    matrices : sequence of (6, 6) arrays
-    rotations : sequence of (3, 3) arrays
-        Part to body.
-    centres : sequence of (3,) arrays
-        m, body axes, from the datum.
-    point : (3,) array
-        m, body axes, from the datum.
-
-    Notes
-    -----
-    The flow of one part is not felt by the others; for parts that touch this is an approximation.
-    """
-    total = np.zeros((6, 6))
-    for matrix, rotation, centre in zip(matrices, rotations, centres, strict=True):
-        total += moved(turned(matrix, rotation), point - centre)
-    return np.asarray((total + total.T) / 2.0)
-
-
-@dataclass(frozen=True, slots=True)
-class Definiteness:
-    """Whether a matrix is symmetric and positive semidefinite, as a kinetic energy must be.
-
-    Attributes
-    ----------
-    asymmetry : float
-        Largest difference across the diagonal, over the largest entry in units of that pair.
-    smallest : float
-        Smallest eigenvalue of the matrix scaled to a unit diagonal.
-    """
-
-    asymmetry: float
-    smallest: float
-
-    @property
-    def holds(self) -> bool:
-        """Both within rounding."""
-        return bool(self.asymmetry <= ROUNDING and self.smallest >= -ROUNDING)
-
-
-def definiteness(matrix: Array) -> Definiteness:
-    """Look at a (6, 6) matrix; entries are scaled by the root of their diagonals, so units do not matter.
-
-    A row with a zero on its diagonal must be zero throughout; otherwise the smallest eigenvalue is -inf.
-    """
-    diagonal = np.diag(matrix)
-    if not np.all(np.isfinite(matrix)) or np.any(diagonal < 0.0):
-        return Definiteness(np.inf, -np.inf)
-    live = diagonal > 0.0
-    if np.any(matrix[~live]) or np.any(matrix[:, ~live]):
-        return Definiteness(float(np.max(np.abs(matrix - matrix.T))), -np.inf)
-    if not np.any(live):
-        return Definiteness(0.0, 0.0)
-    root = np.sqrt(diagonal[live])
-    scaled = matrix[np.ix_(live, live)] / np.outer(root, root)
-    smallest = float(np.linalg.eigvalsh((scaled + scaled.T) / 2.0)[0])
-    return Definiteness(float(np.max(np.abs(scaled - scaled.T))), smallest)
+from coeflab.law.transforms import moved, velocity_transfer
 
 
 @stored()

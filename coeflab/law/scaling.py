@@ -16,6 +16,7 @@ from coeflab.core.declarations import number_in
 from coeflab.core.errors import InputError, ScalingMismatchError
 from coeflab.core.limits import positive_number
 from coeflab.core.stored import Means
+from coeflab.core.texts import input_error
 from coeflab.core.types import Array
 from coeflab.core.units import GRAMS
 from coeflab.law.symbols import ANGULAR, COMPONENTS, CONTROLS, LINEAR, MOMENTS, derivative
@@ -134,9 +135,8 @@ def require_hull(value: Any, key: str | None = None) -> None:
     if not isfinite(number) or number < LENGTHS[0] / 1000.0:
         return  # no hull in km either: its own bounds say what is wrong
     if doubt := doubtful_size("scaling.length", number):
-        raise InputError(
-            f"{number:g}, a length without a unit", f"{LENGTHS[0]:g} to {LENGTHS[1]:g} m, or a length with its unit", column=key,
-            advice=f'{doubt}; if not, "{number:g} m".',
+        raise input_error(
+            "law.length_without_unit", column=key, number=number, lengths=LENGTHS[0], lengths_2=LENGTHS[1], doubt=doubt,
         )  # fmt: skip
 
 

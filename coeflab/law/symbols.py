@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from functools import lru_cache
 
 from coeflab.core.errors import InputError, shown
+from coeflab.core.texts import input_error
 
 FORCES = ("X", "Y", "Z")
 MOMENTS = ("K", "M", "N")
@@ -108,9 +109,7 @@ def derivative(symbol: str) -> Derivative:
     read = read_factors(rest) if component in COMPONENTS else None
     if read is None or len(read) > LONGEST:
         if same := respelled(symbol):
-            raise InputError(
-                shown(symbol), "a SNAME derivative such as Yv', Nr', Xvv', X0' or Ydr'", advice=f"Did you mean {same}'?"
-            )
+            raise input_error("law.sname_derivative_such_2", found=shown(symbol), same=same)
         known = [c + f for c in COMPONENTS for f in ("v", "w", "r", "q", "p", "vv", "ww", "rr", "dr", "ds", "0")]
         near = difflib.get_close_matches(text[:12], known, n=3, cutoff=0.4)
         raise InputError(

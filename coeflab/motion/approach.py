@@ -57,9 +57,8 @@ def turning_sense(vehicle: Vehicle, control: str, about: str, speed: float) -> f
     """
     if not any(control in t.variables for t in vehicle.law.terms):
         known = [c for c in CONTROLS if any(c in t.variables for t in vehicle.law.terms)]
-        raise InputError(
-            f"no coefficient of {control}", f"a derivative such as {'N' if about == 'r' else 'M'}{control}",
-            column="coefficients",
+        raise input_error(
+            "motion.derivative_such", column="coefficients", control=control, value="N" if about == "r" else "M",
             advice=f"The file has {', '.join(known)}." if known else _instead(vehicle),
         )  # fmt: skip
     nu = along(vehicle, speed)[None, :]

@@ -14,8 +14,8 @@ from coeflab.core.wording import listed
 from coeflab.law.force_law import ForceLaw
 from coeflab.law.symbols import COMPONENTS
 from coeflab.law.transforms import force_transfer, velocity_transfer
-from coeflab.motion.dynamics import modes
 from coeflab.motion.simulation import simulate
+from coeflab.motion.small_motions import modes
 from coeflab.motion.vehicle import vehicle
 from coeflab.vehicle.comparison import coefficient_set
 from coeflab.vehicle.force_law import motion_law

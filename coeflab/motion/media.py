@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 
 from coeflab.core.errors import InputError
+from coeflab.core.texts import input_error
 from coeflab.core.types import Array
 from coeflab.motion.dynamics import rotations
 from coeflab.motion.manoeuvre import Manoeuvre, Phase, Until
@@ -87,10 +88,8 @@ def _check(vehicle: Vehicle, manoeuvre: Manoeuvre, stretches: Sequence[tuple[Pha
             there = at is not None and abs(at.value - manoeuvre.surface) <= ON_SURFACE
             if last and not (there and at is not None and at.rises == (down == (number % 2 == 0))):
                 where = "by time" if at is None else f"at a depth of {at.value:g} m"
-                raise InputError(
-                    f"a change of medium after {phase.name}, {where}",
-                    f"at the surface, {manoeuvre.surface:g} m below the start, towards the other medium", column="medium",
-                    advice="A medium changes where the craft is, and never within a step.",
+                raise input_error(
+                    "motion.change_medium_after", column="medium", name=phase.name, where_2=where, surface=manoeuvre.surface,
                 )  # fmt: skip
 
 

@@ -12,7 +12,7 @@ from coeflab.core.errors import InputError, shown
 from coeflab.core.finding import Severity
 from coeflab.core.machine import one_thread
 from coeflab.core.options import of_a_file
-from coeflab.core.texts import remark
+from coeflab.core.texts import input_error, remark
 from coeflab.law.coefficient import Status
 from coeflab.law.symbols import MOTIONS
 from coeflab.motion.approach import at_once, decisive, undetermined_at_once
@@ -57,9 +57,9 @@ def manoeuvres_of(
     for asked in planned:
         parameters = files.get(asked.parameter_file)
         if parameters is None:
-            raise InputError(
-                f"no parameter file {shown(asked.parameter_file)} in the study", f"one of {', '.join(files)}",
-                file=asked.file, column=asked.key("parameter_file"),
+            raise input_error(
+                "motion.parameter_file_study", asked.file, column=asked.key("parameter_file"),
+                parameter_file=shown(asked.parameter_file), files=", ".join(files),
             )  # fmt: skip
         try:
             options = of_a_file(MANOEUVRES.load(asked.name).Options, asked.options, asked.name)

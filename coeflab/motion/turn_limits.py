@@ -17,8 +17,8 @@ from coeflab.core.finding import Finding, Severity
 from coeflab.core.texts import words
 from coeflab.core.types import Array
 from coeflab.law.symbols import ANGULAR, MOTIONS
-from coeflab.motion.dynamics import linearised, modes
 from coeflab.motion.manoeuvre import UPRIGHT
+from coeflab.motion.small_motions import linearised, modes
 from coeflab.motion.trajectory import covered_ranges
 from coeflab.motion.vehicle import Vehicle
 

@@ -14,12 +14,12 @@ from coeflab.core.units import STANDARD_GRAVITY
 from coeflab.law.force_law import ForceLaw
 from coeflab.law.rigid_body import rigid_body_force, rigid_body_inertia
 from coeflab.law.symbols import COMPONENTS, CONTROLS, MOTIONS
-from coeflab.law.transforms import turned_about
 from coeflab.motion.dynamics import restoring
+from coeflab.motion.thrusters import levers, wrench
 from coeflab.vehicle.force_law import motion_law
 from coeflab.vehicle.inertia import MEASURED, WaterInertia, water_inertia, with_accelerations
 from coeflab.vehicle.parameter_file import CoveredRange, ParameterFile
-from coeflab.vehicle.parameter_parts import THRUST, ParameterHydrostatics, ParameterSurface, ParameterThruster
+from coeflab.vehicle.parameter_parts import ParameterHydrostatics, ParameterSurface, ParameterThruster
 
 PLANES = {"horizontal": ("u", "v", "r"), "vertical": ("u", "w", "q")}
 BALANCED, ONE_POINT = 5e-3, 1e-4  # of the weight and of the length: less is trimmed, or one point
@@ -158,44 +158,17 @@ class Vehicle:
         InputError
             A name that no thruster has.
         """
-        known = {t.name for t in self.thrusters} | {THRUST}
-        known |= {f"{t.name}.tilt" for t in self.thrusters if t.tilt_axis is not None}
-        strange = sorted(set(commands) - known)
-        if strange:
-            raise InputError(
-                f"the command {shown(strange[0])}", f"one of {', '.join(sorted(known))}", column="thrusters"
-            )
-        out = np.zeros(6)
-        out[0] = commands.get(THRUST, 0.0)
-        for t in self.thrusters:
-            command = commands.get(t.name, 0.0)
-            along = _along(t, commands.get(f"{t.name}.tilt", 0.0))
-            force = t.curve.at(command) * along
-            out[:3] += force
-            out[3:] += np.cross(np.array(t.position), force)
-            if t.torque_curve is not None:
-                out[3:] += t.handedness * t.torque_curve.at(command) * along
-        return out
+        return wrench(self.thrusters, commands)
 
     def levers(self, k: int, tilt: float) -> Array:
         """(2, 6) force and moment of one newton of thrust, and of one newton metre of torque, of a thruster at a tilt."""
-        t = self.thrusters[k]
-        along = _along(t, tilt)
-        return np.array([[*along, *np.cross(np.array(t.position), along)], [0.0, 0.0, 0.0, *(t.handedness * along)]])
+        return levers(self.thrusters[k], tilt)
 
     def resistance(self, speed: float) -> float:
         """Thrust that a straight course ahead takes, N, at no angle and no control."""
         nu = np.zeros((1, 6))
         nu[0, 0] = speed
         return -float(self.force(nu, np.zeros((1, 3)))[0, 0])
-
-
-def _along(t: ParameterThruster, tilt: float) -> Array:
-    """(3,) direction of thrust at a tilt, held within its limits."""
-    along = np.array(t.direction)
-    if t.tilt_axis is None:
-        return along
-    return np.asarray(turned_about(np.array(t.tilt_axis), min(max(tilt, t.tilt_low), t.tilt_high)) @ along)
 
 
 def vehicle(
@@ -230,9 +203,9 @@ def vehicle(
         raise InputError(f"a mass of {mass.mass:g} kg", "above zero", column="mass")
     strange = [f for f in free if f not in MOTIONS]
     if strange or plane not in ("", *PLANES):
-        raise InputError(
-            shown(strange[0] if strange else plane), f"some of {' '.join(MOTIONS)}, or a plane: {', '.join(PLANES)}",
-            column="free" if strange else "plane",
+        raise input_error(
+            "motion.unknown_plane", column="free" if strange else "plane", found=shown(strange[0] if strange else plane),
+            motions=" ".join(MOTIONS), planes=", ".join(PLANES),
         )  # fmt: skip
     water = water_inertia(parameters, accelerations)
     parameters = with_accelerations(parameters, accelerations)

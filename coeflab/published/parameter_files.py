@@ -11,7 +11,8 @@ from coeflab.core.axes import Datum
 from coeflab.core.files import shipped
 from coeflab.core.provenance import InputFile, sha256_of
 from coeflab.core.units import STANDARD_GRAVITY
-from coeflab.formats.imported_file import Law, Stated, imported_file, stated_table
+from coeflab.formats.stated_file import Law, Stated, stated_file
+from coeflab.formats.stated_table import stated_table
 from coeflab.glider.glider import Glider
 from coeflab.law.rigid_body import MassProperties
 from coeflab.law.scaling import Conditions, Scaling
@@ -53,7 +54,7 @@ def flyingfish_file(fish: FlyingFish, medium: Medium = "water") -> ParameterFile
         mass=MassProperties(mass, 0.0, FLYINGFISH_INERTIA, np.zeros(3), FLYINGFISH_INERTIA * np.eye(3)),
         notes=publication("flyingfish").texts(f"notes_{medium}", inertia=FLYINGFISH_INERTIA),
     )  # fmt: skip
-    file = imported_file(stated, _sources("flyingfish", "vehicle.toml", "operating_points.csv"), ("tj_flyingfish",))
+    file = stated_file(stated, _sources("flyingfish", "vehicle.toml", "operating_points.csv"), ("tj_flyingfish",))
     rest = ParameterHydrostatics(
         volume=volume,
         centre_of_buoyancy=(0.0, 0.0, fish.constants["buoyancy_moment"] / buoyancy),
@@ -96,7 +97,7 @@ def thauv_file(glider: Glider) -> ParameterFile:
         mass=MassProperties(THAUV_MASS, THAUV_MASS * float(centre[0]), m.pitch_inertia, centre),
         notes=publication("thauv").texts("notes"),
     )  # fmt: skip
-    file = imported_file(stated, _sources("thauv", f"{glider.name.removeprefix('thauv_')}.toml"), ("thauv",))
+    file = stated_file(stated, _sources("thauv", f"{glider.name.removeprefix('thauv_')}.toml"), ("thauv",))
     rest = ParameterHydrostatics(
         volume=THAUV_MASS / SEA.density, centre_of_buoyancy=(0.0, 0.0, 0.0), gravity=glider.gravity
     )

@@ -28,9 +28,11 @@ from coeflab.fits.uncertainty.budget import Budget
 from coeflab.law.coefficient import transfer_matrix
 from coeflab.law.symbols import ANGULAR, CONTROLS, MOTIONS, primed
 from coeflab.motion.dynamics import FIRST, SECOND
-from coeflab.motion.manoeuvre import Manoeuvre, orders_of
+from coeflab.motion.ensemble import alone
+from coeflab.motion.manoeuvre import Manoeuvre
 from coeflab.motion.manoeuvres import zigzag
-from coeflab.motion.marching import alone, chosen_step
+from coeflab.motion.marching import chosen_step
+from coeflab.motion.orders import orders_of
 from coeflab.motion.simulation import moved
 from coeflab.motion.trajectory import covered_ranges
 from coeflab.motion.turn_limits import WITH, linear_growth, open_in_general, open_turn, speaks_of_turning

@@ -16,19 +16,15 @@ from coeflab.fits import FITS
 from coeflab.fits.results.fit_result import FitResult
 from coeflab.formats import loss_tables
 from coeflab.report.bench import bench_of
-from coeflab.report.document import Document, Section, Topic, digest_of, every, reproduction, shipped_name
+from coeflab.report.document import Document, Section, Topic, every
 from coeflab.report.figures.svg import settings
 from coeflab.report.first_page import answer
 from coeflab.report.notation import keeping, users_texts
-from coeflab.report.sections.body import added_mass_sections, body_sections
-from coeflab.report.sections.campaign import (
-    anchor,
-    budget_sections,
-    campaign_section,
-    filled,
-    says_nothing,
-    tow_sections,
-)
+from coeflab.report.reproduction import digest_of, reproduction, shipped_name
+from coeflab.report.sections.added_mass import added_mass_sections
+from coeflab.report.sections.body import body_sections
+from coeflab.report.sections.budgets import budget_sections, tow_sections
+from coeflab.report.sections.campaign import anchor, campaign_section, filled, says_nothing
 from coeflab.report.sections.coefficients import coefficients_section
 from coeflab.report.sections.conventions import conventions_section
 from coeflab.report.sections.data_quality import quality_sections
@@ -38,12 +34,12 @@ from coeflab.report.sections.manoeuvres import manoeuvre_sections
 from coeflab.report.sections.review import review_sections
 from coeflab.report.sections.stability import stability_sections
 from coeflab.report.sections.verdict import SEVERAL, verdict
+from coeflab.report.tables import budgets as budget_tables
 from coeflab.report.tables import comparisons
 from coeflab.report.tables import models as model_tables
 from coeflab.report.tables import nouns as noun_tables
 from coeflab.report.tables import results as tables
 from coeflab.report.tables import sources as source_tables
-from coeflab.report.tables import uncertainty as budget_tables
 from coeflab.report.texts import text_of
 from coeflab.report.workers import begun
 from coeflab.study.study import Study
@@ -85,14 +81,15 @@ def document(study: Study, *, full: bool = True, review: bool = False) -> Docume
 def core(document: Document, sources: Collection[str] | None = None) -> Document:
     """A report without what belongs to the appendix, and of the works those named, else all; no paragraph, note or caption is longer than three lines."""
     sections = tuple(
-        _short(s, document.digest) if s.anchor == "reproduce" else s for s in _core_sections(document.sections)
+        _short_reproduction(s, document.digest) if s.anchor == "reproduce" else s
+        for s in _without_appendix(document.sections)
     )
     known = {s.anchor for s in every(sections)}
     answer = document.answer
     if answer is not None:
-        rows = tuple(replace(r, anchor=_found(r.anchor, known)) for r in answer.rows)
+        rows = tuple(replace(r, anchor=_known_anchor(r.anchor, known)) for r in answer.rows)
         answer = replace(
-            answer, rows=rows, chips=tuple(replace(c, anchor=_found(c.anchor, known)) for c in answer.chips)
+            answer, rows=rows, chips=tuple(replace(c, anchor=_known_anchor(c.anchor, known)) for c in answer.chips)
         )
     return replace(
         document,
@@ -135,11 +132,11 @@ def _setting(name: str, value: object) -> str:
     return f"{name} = {value} ({meaning})" if meaning else f"{name} = {value}"
 
 
-def _found(anchor: str, known: set[str]) -> str:
+def _known_anchor(anchor: str, known: set[str]) -> str:
     return anchor if anchor in known or not anchor else "coefficients" if "coefficients" in known else ""
 
 
-def _short(reproduce: Section, digest: str) -> Section:
+def _short_reproduction(reproduce: Section, digest: str) -> Section:
     """How to reproduce, in three sentences; the whole report says the rest."""
     if not reproduce.code:
         return reproduce
@@ -152,7 +149,7 @@ def _short(reproduce: Section, digest: str) -> Section:
     return replace(reproduce, paragraphs=three_lines(text))
 
 
-def _core_sections(sections: Sequence[Section]) -> tuple[Section, ...]:
+def _without_appendix(sections: Sequence[Section]) -> tuple[Section, ...]:
     return tuple(
         replace(
             s,
@@ -160,7 +157,7 @@ def _core_sections(sections: Sequence[Section]) -> tuple[Section, ...]:
             topics=tuple(replace(t, texts=three_lines(t.texts)) for t in s.topics),
             tables=tuple(replace(t, notes=three_lines(t.notes)) for t in s.tables),
             figures=tuple(replace(f, caption=first_lines(f.caption)) for f in s.figures),
-            subsections=_core_sections(s.subsections),
+            subsections=_without_appendix(s.subsections),
         )
         for s in sections
         if not s.appendix
@@ -170,7 +167,7 @@ def _core_sections(sections: Sequence[Section]) -> tuple[Section, ...]:
 def _document(study: Study, full: bool) -> Document:
     places: set[str] = set()
     own = [anchor(f"campaign {fit.campaign}", places) for fit in study.fits] if full and study.shape is None else []
-    alone = [partial(_alone, study, fit, place, places) for fit, place in zip(study.fits, own, strict=False)]
+    alone = [partial(_campaign_alone, study, fit, place, places) for fit, place in zip(study.fits, own, strict=False)]
     sizes = [len(f.sweeps) for f in study.fits]
     with settings(), begun(alone if sum(sizes) > FEW else (), sizes) as drawn:
         answered = answer(study)
@@ -196,7 +193,7 @@ def _document(study: Study, full: bool) -> Document:
     )
     if not full and (study.shape is None or study.plan.file is not None):
         sections = (
-            replace(sections[0], topics=(*sections[0].topics, Topic("Appendix", (also(study),)))),
+            replace(sections[0], topics=(*sections[0].topics, Topic("Appendix", (appendix_in_a_line(study),)))),
             *sections[1:],
         )
     bodies = list(dict.fromkeys(f.body.replace("_", " ") for f in study.fits))
@@ -219,7 +216,7 @@ def _campaigns(found: tuple[Section, ...]) -> tuple[Section, ...]:
     return (Section("campaigns", "Campaigns", text, subsections=found, appendix=True),)
 
 
-def also(study: Study) -> str:
+def appendix_in_a_line(study: Study) -> str:
     """What the whole report holds beside the core, in one line."""
     shipped = shipped_name(study.plan)
     name = shipped or (study.plan.file.name if study.plan.file else "PLAN")
@@ -240,7 +237,7 @@ def also(study: Study) -> str:
     return f"{where}`coeflab report {shlex.quote(name)} --full` adds the appendix: {listing}."
 
 
-def _alone(study: Study, fit: FitResult, place: str, places: set[str]) -> Section:
+def _campaign_alone(study: Study, fit: FitResult, place: str, places: set[str]) -> Section:
     return campaign_section(study, fit, place, set(places))
 
 
@@ -267,7 +264,7 @@ def _laws(study: Study) -> tuple[Section, ...]:
         return ()
     text: tuple[str, ...] = (
         text_of("content.laws"),
-        *(_held(name, found[name], table) for name, table in each.items()),
+        *(_law_in_words(name, found[name], table) for name, table in each.items()),
     )
     in_files = {c.campaign for p in study.parameter_files.values() for c in p.coefficients}
     if none := [c for c in dict.fromkeys(f.campaign for f in study.fits) if not in_files & {c, *c.split(", ")}]:
@@ -278,7 +275,7 @@ def _laws(study: Study) -> tuple[Section, ...]:
     return (Section("law-at-points", "Force law at its points", text, subsections=(whole,)),)
 
 
-def _held(name: str, found: Sequence[LawAtPoints], table: Table) -> str:
+def _law_in_words(name: str, found: Sequence[LawAtPoints], table: Table) -> str:
     """How the law of a file agrees with its points: how many components of tables hold, and the largest difference in its range."""
     judged = [f for f in found if not f.small and len(f.beyond) < f.n_points]
     if not judged:

@@ -1,28 +1,18 @@
-"""A report before it has a format: what HTML and PDF both render.
-
-How to make a report again: the exact command, the version, and how to see that the inputs are the same.
-"""
+"""A report before it has a format: what HTML and PDF both render."""
 
 from __future__ import annotations
 
-import hashlib
-import shlex
 from collections.abc import Iterable, Iterator
 
 import numpy as np
 from numpy.typing import NDArray
 
 from coeflab.core.cards import html_by
-from coeflab.core.files import shipped
 from coeflab.core.finding import Severity
-from coeflab.core.provenance import InputFile, sha256_of
 from coeflab.core.table import ABSENT, Table, as_printed, with_u95
 from coeflab.core.types import dataclass, in_angles, locked
-from coeflab.core.version import VERSION
 from coeflab.law.symbols import primed
 from coeflab.report.bench import BenchData
-from coeflab.report.texts import text_of
-from coeflab.study.study import Plan, Study
 from coeflab.tables.assumptions import FLAG
 
 Range = tuple[float, float]
@@ -402,66 +392,3 @@ def every(sections: Iterable[Section]) -> Iterator[Section]:
     for section in sections:
         yield section
         yield from every(section.subsections)
-
-
-PLAN = "plan.toml"
-VERSION_TEXT = (
-    f"This report was made by coeflab {VERSION}: coeflab --version tells which one is installed. Nothing is released yet, so many "
-    "states of the sources carry that number: note the commit beside a report that has to be made again, and install it with "
-    "pip install . -c constraints.txt, which also takes the libraries in the versions that the tests run with."
-)
-
-
-def reproduction(study: Study) -> Section:
-    """Of a study: its shipped name, or its own plan."""
-    file = study.plan.file
-    if file is None and study.plan.command:
-        where = "Run this where the shape lies: paths are named by their last part. --out names another folder."
-        return _section((where, text_of("document.same")), (study.plan.command,), study.inputs)
-    if file is None:
-        return _section(
-            ("The plan was made by a program, not read from a file, so no command gives this report.",),
-            (),
-            study.inputs,
-        )
-    name = shipped_name(study.plan)
-    if name:
-        where = f"coeflab ships with the plan and the data of the study {name}. Run this in any folder."
-        return _section((where, text_of("document.same")), (command(name),), study.inputs)
-    where = text_of("document.own_plan", name=file.name)
-    return _section((where, text_of("document.same")), (command(file.name),), study.inputs)
-
-
-def published_reproduction(name: str, inputs: tuple[InputFile, ...]) -> Section:
-    """Of a publication reproduced."""
-    where = f"The validation {name} is shipped with coeflab with its data. Run this in any folder."
-    return _section((where, text_of("document.same")), (command(name),), inputs)
-
-
-def command(study: str) -> str:
-    """What to type for the report of a study, a plan's name or that of a shipped one."""
-    return f"coeflab report {shlex.quote(study)} --to html,pdf"
-
-
-def shipped_name(plan: Plan) -> str:
-    """The name of a shipped study, whose plan and campaigns these are; empty for a plan of one's own."""
-    data = shipped("cfd_data").resolve()
-    own = {path.parent.name: path for path in data.glob(f"*/{PLAN}")}.get(plan.name)
-    is_same = own is not None and plan.file == InputFile(PLAN, sha256_of(own))
-    return plan.name if is_same and all(t.campaign.resolve().is_relative_to(data) for t in plan.tables) else ""
-
-
-def digest_of(inputs: tuple[InputFile, ...]) -> str:
-    """Sixteen hexadecimal digits over all inputs; empty where there are none."""
-    whole = "".join(f"{f.name} {f.sha256}\n" for f in inputs)
-    return hashlib.sha256(whole.encode()).hexdigest()[:16] if whole else ""
-
-
-def _section(text: tuple[str, ...], code: tuple[str, ...], inputs: tuple[InputFile, ...]) -> Section:
-    return Section("reproduce", "How to reproduce", (*text[1:], VERSION_TEXT, *_hashes(inputs), *text[:1]), code=code)
-
-
-def _hashes(inputs: tuple[InputFile, ...]) -> tuple[str, ...]:
-    if not inputs:
-        return ()
-    return (text_of("document.hashes", inputs=digest_of(inputs)),)

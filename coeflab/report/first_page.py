@@ -20,12 +20,13 @@ from coeflab.law.coefficient import NAMED_STATUSES, Coefficient, CoefficientSet,
 from coeflab.law.symbols import derivative, primed
 from coeflab.report.acceptance import Acceptance, by_basis, held
 from coeflab.report.answer_table import LONGEST, MOST_COLUMNS, MOST_MODELS, MOST_ROWS
-from coeflab.report.document import Answer, AnswerRow, Chip, Document, Figure, digest_of
+from coeflab.report.document import Answer, AnswerRow, Chip, Document, Figure
 from coeflab.report.figures.first_page import axes_figure, forest_figure, renamed, shares_figure, slope_figure
 from coeflab.report.figures.model import model_figures
-from coeflab.report.figures.svg import size_of
+from coeflab.report.figures.svg_file import size_of
 from coeflab.report.first_page_notes import MOST_NAMED, NO_DATA, PublishedColumns, notes
 from coeflab.report.notation import keeping, users_texts
+from coeflab.report.reproduction import digest_of
 from coeflab.report.sections.campaign import anchor, moved_from
 from coeflab.report.sections.estimates import answer_of_shape
 from coeflab.report.sections.stability import from_literature, no_index
@@ -37,8 +38,8 @@ from coeflab.study.lines import MEANING as MEANING_OF_LINE
 from coeflab.study.lines import NAME, line
 from coeflab.study.study import Study
 from coeflab.study.towed import Towed, towed
-from coeflab.vehicle.reference import Comparison, Reference, Relation
-from coeflab.vehicle.stability import ALONE, FAST, INDICES, Derived, missing_for_stability, sense, stability
+from coeflab.vehicle.published_values import Comparison, Reference, Relation
+from coeflab.vehicle.stability import FAST, INDICES, Derived, Verdict, missing_for_stability, stability, verdict
 
 ROLL = "K"  # moments of which no hull has a sign: a headline says what is open of one that is asked for, or alone
 PLACES = 4  # of a line, which has no U95 to say how many count
@@ -342,12 +343,12 @@ def _stability(study: Study) -> tuple[Chip, ...]:
 
 
 def _of_plane(study: Study, d: Derived) -> Chip:
-    words = sense(d).removesuffix(ALONE).partition(f" {FAST}")[0]
+    says = verdict(d)
     grave = (
         Severity.PASS
-        if words == "stable" and d.result is not None
+        if says is Verdict.STABLE and d.result is not None
         else Severity.WARN
-        if words.startswith("unstable")
+        if says is Verdict.UNSTABLE
         else Severity.NOTE
     )
     value = f"{d.value:.2f}, no U95" if d.result is None else d.in_words
@@ -357,7 +358,7 @@ def _of_plane(study: Study, d: Derived) -> Chip:
     published = f" ({', '.join(stated)} published)" if 0 < len(stated) < len(INDICES[d.name]) - 1 else ""
     several = len(study.parameter_files) > 1
     name = f"{_of_study_named(study, d.subject)}, {plane}{fast}" if several else f"Stability, {plane} plane{fast}"
-    return Chip(name, f"{words}, {d.name} = {value}{published}", grave, "stability")
+    return Chip(name, f"{says}, {d.name} = {value}{published}", grave, "stability")
 
 
 def _of_study_named(study: Study, name: str) -> str:

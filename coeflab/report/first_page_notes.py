@@ -14,13 +14,13 @@ from coeflab.law.coefficient import CoefficientSet
 from coeflab.law.scaling import Scaling
 from coeflab.law.symbols import primed
 from coeflab.report.document import AnswerRow
+from coeflab.report.tables.budgets import SET_IN_A_COMPUTATION
 from coeflab.report.tables.results import undetermined_by_move
 from coeflab.report.tables.sources import halves
-from coeflab.report.tables.uncertainty import SET
 from coeflab.study.study import Study
 from coeflab.study.validation import by_measured_number, validations
 from coeflab.tables.assumptions import FLAG
-from coeflab.vehicle.reference import Reference, Relation
+from coeflab.vehicle.published_values import Reference, Relation
 
 MOST_LETTERS, MOST_NAMED = 240, 4
 NO_DATA = "no data"
@@ -143,7 +143,7 @@ def _not_in_u95(study: Study, rows: Sequence[AnswerRow]) -> str:
     budgets = [b for b in study.budgets if (b.campaign, b.symbol.removesuffix("'")) in mine]
     lacking: dict[str, set[str]] = {}
     for b in budgets:
-        for name in (n for n in b.unassessed if n not in (SET if b.kind == "cfd" else ())):
+        for name in (n for n in b.unassessed if n not in (SET_IN_A_COMPUTATION if b.kind == "cfd" else ())):
             lacking.setdefault(name.removeprefix("error of "), set()).add(b.symbol.removesuffix("'"))
     whole = {b.symbol.removesuffix("'") for b in budgets}
     names = sorted(lacking, key=lambda n: lacking[n] != whole)

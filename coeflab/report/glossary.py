@@ -15,7 +15,7 @@ from importlib.resources import files
 from coeflab.core.provenance import work
 from coeflab.core.text.bounded import own_text
 from coeflab.core.text.toml import own_toml
-from coeflab.report.notation import html, html_with
+from coeflab.report.markup import html, html_with
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,22 +1,14 @@
-"""Symbols in plain text: where a sentence or a cell holds mathematics, and which; what users wrote holds none.
-
-Texts with their symbols and exponents as HTML, as parts of an SVG text, and as plain letters.
-
-What HTML shows is also what it says: the text of its elements is that which was written (``Yvdot'``, ``U^2``), so that
-it is found, heard and copied; only minus signs, Greek letters, powers of ten and the names of fitted models
-(``C_D_alpha^2``) are the proper characters.
-"""
+"""Symbols in plain text: where a sentence or a cell holds mathematics, and which; what users wrote holds none."""
 
 from __future__ import annotations
 
 import re
 import unicodedata
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from contextvars import ContextVar
 from dataclasses import fields, is_dataclass
-from functools import lru_cache, wraps
-from html import escape
+from functools import wraps
 from typing import ParamSpec, TypeVar
 
 from coeflab.core.errors import InputError
@@ -24,7 +16,6 @@ from coeflab.core.text.patterns import one_of
 from coeflab.core.types import dataclass
 from coeflab.core.wording import Verbatim
 from coeflab.law.symbols import CONTROLS, derivative
-from coeflab.report.printable import runs_to_the_left, visible
 
 GREEK = {
     "alpha": "α", "beta": "β", "gamma": "γ", "delta": "δ", "theta": "θ", "lambda": "λ", "nu": "ν", "rho": "ρ",
@@ -120,7 +111,7 @@ _FIRST = r"(?:X[uvwqr]|Y[vwpr]|Z[vwqr]|K[vr]|M[wqv]|N(?:[vw]|r(?! ?\d)))"
 _SECOND = r"[XYZKMN](?:[vwpqr]{2}|[uvwpqr]{2}(?=, [XYZKMN][uvwpqr]{2}\b)|(?<=[uvwpqr]{2}, [XYZKMN])[uvwpqr]{2})"
 _EDGE = r"(?<![\w.?&$\\'-])(?<!\w\w/)"
 _END = rf"(?!(?![{HIGH}])[\w$\\'])(?!\.\w)"
-_TOKENS = re.compile(
+TOKENS = re.compile(
     "|".join(
         (
             r"(?P<command>`coeflab [^`]+`)",
@@ -176,7 +167,7 @@ def _looks_like_symbols(text: str) -> bool:
     try:
         float(text)
     except ValueError:
-        return any(map(str.isalpha, text)) and (_TOKENS.search(text) is not None or cell_runs(text) != (text,))
+        return any(map(str.isalpha, text)) and (TOKENS.search(text) is not None or cell_runs(text) != (text,))
     return False
 
 
@@ -216,7 +207,7 @@ def _beginnings(texts: tuple[str, ...]) -> re.Pattern[str]:
     return one_of([*long, *short])
 
 
-def _covered(text: str, verbatim: VerbatimTexts | None) -> str:
+def masked(text: str, verbatim: VerbatimTexts | None) -> str:
     """The text, of equal length, with a neutral letter for every one of a user's."""
     if verbatim is None or not verbatim.texts:
         return text
@@ -267,20 +258,20 @@ def runs(text: str, verbatim: VerbatimTexts | None = None) -> tuple[Run, ...]:
     tuple
         Never two plain pieces in a row. A text with ``$`` or a backslash is somebody's markup: one plain piece.
     """
-    covered = _covered(text, verbatim)
+    covered = masked(text, verbatim)
     if "$" in covered or "\\" in covered:
         return (text,)
     out: list[Run] = []
     at = 0
-    for found in _TOKENS.finditer(covered):
-        out += [text[at : found.start()], *_pieces(found)]
+    for found in TOKENS.finditer(covered):
+        out += [text[at : found.start()], *symbol_pieces(found)]
         at = found.end()
-    return _joined([*out, text[at:]])
+    return joined([*out, text[at:]])
 
 
 def cell_runs(text: str, verbatim: VerbatimTexts | None = None) -> tuple[Run, ...]:
     """A table's cell in pieces: as `runs`, and a cell that is nothing but a derivative is one without its prime too."""
-    if _covered(text, verbatim) != text:
+    if masked(text, verbatim) != text:
         return runs(text, verbatim)
     if text == "-":
         return ("\u2013",)
@@ -301,10 +292,11 @@ def unit_runs(text: str) -> tuple[Run, ...]:
     pieces: list[Run] = []
     for i, part in enumerate(re.split(r"\^(-?\d+)", _UNITS.get(text, text.replace("*", "·")))):
         pieces.append(Raised(part.replace("-", MINUS)) if i % 2 else part)
-    return _joined(pieces)
+    return joined(pieces)
 
 
-def _joined(pieces: list[Run]) -> tuple[Run, ...]:
+def joined(pieces: list[Run]) -> tuple[Run, ...]:
+    """Runs without empty ones, never two plain pieces in a row."""
     out: list[Run] = []
     for piece in pieces:
         if isinstance(piece, str) and out and isinstance(out[-1], str):
@@ -314,7 +306,8 @@ def _joined(pieces: list[Run]) -> tuple[Run, ...]:
     return tuple(out)
 
 
-def _pieces(found: re.Match[str]) -> tuple[Run, ...]:
+def symbol_pieces(found: re.Match[str]) -> tuple[Run, ...]:
+    """The runs of one match of `TOKENS`."""
     kind, text = str(found.lastgroup), found[0]
     if kind == "command":
         return (Command(text.strip("`")),)
@@ -381,178 +374,3 @@ def _derivative(text: str) -> Symbol:
         else:
             factors.append(Factor(name[0], dotted=name.endswith("dot"), absolute=absolute))
     return Symbol(bare[0], text, tuple(factors), primed=primed)
-
-
-PRIME = "\u2032"
-REMEMBERED = 1 << 14
-SMALL = 0.72
-LOWER, HIGHER = 0.22, -0.34
-Part = tuple[str, bool, float]
-
-
-def html(text: str) -> str:
-    """A sentence or a heading as HTML; every character of a user's is a text."""
-    return _html(text, verbatim())
-
-
-@lru_cache(REMEMBERED)
-def _html(text: str, verbatim: VerbatimTexts | None) -> str:
-    return _page(text, runs(text, verbatim))
-
-
-def html_with(text: str, marks: Callable[[str], Iterable[tuple[int, int, str, str]]]) -> str:
-    """A sentence as HTML with elements round some of its words.
-
-    Parameters
-    ----------
-    text : str
-    marks : callable
-        Gets the text with a neutral letter for every one of a user's, and gives in order, without overlap: beginning, end,
-        and what stands before and after as HTML. A mark that would cut a symbol in two is left out.
-    """
-    covered = _covered(text, verbatim())
-    tokens = [] if "$" in covered or "\\" in covered else list(_TOKENS.finditer(covered))
-    out, at = [], 0
-    for start, end, before, after in marks(covered):
-        if any(t.start() < edge < t.end() for t in tokens for edge in (start, end)):
-            continue
-        out += [_between(text, tokens, at, start), before, _between(text, tokens, start, end), after]
-        at = end
-    return _directed(text, "".join([*out, _between(text, tokens, at, len(text))]))
-
-
-def _between(text: str, tokens: Sequence[re.Match[str]], start: int, end: int) -> str:
-    """A part of a sentence as HTML, by the symbols of the whole."""
-    pieces: list[Run] = []
-    at = start
-    for found in tokens:
-        if start <= found.start() and found.end() <= end:
-            pieces += [text[at : found.start()], *_pieces(found)]
-            at = found.end()
-    return "".join(_element(piece) for piece in _joined([*pieces, text[at:end]])).replace("</i><i>", "")
-
-
-def cell_html(text: str) -> str:
-    """A table's cell as HTML."""
-    return _cell_html(text, verbatim())
-
-
-@lru_cache(REMEMBERED)
-def _cell_html(text: str, verbatim: VerbatimTexts | None) -> str:
-    return _page(text, cell_runs(text, verbatim))
-
-
-def unit_html(text: str) -> str:
-    """A cell that holds a unit, as HTML."""
-    return _page(text, unit_runs(text))
-
-
-def label(text: str) -> str:
-    """A text in letters alone, for places that know no other: ``v'^3`` is v′³."""
-    return _label(text, verbatim())
-
-
-@lru_cache(REMEMBERED)
-def _label(text: str, verbatim: VerbatimTexts | None) -> str:
-    return visible("".join(_letters(piece) for piece in cell_runs(text, verbatim)))
-
-
-def unit_label(text: str) -> str:
-    """A unit in letters alone."""
-    return visible("".join(_letters(piece) for piece in unit_runs(text)))
-
-
-def drawn(text: str) -> str:
-    """The inside of an SVG ``<text>`` element."""
-    return _drawn(text, verbatim())
-
-
-@lru_cache(REMEMBERED)
-def _drawn(text: str, verbatim: VerbatimTexts | None) -> str:
-    out, before = [], 0.0
-    for letters, slanted, level in _joined_lettering(
-        part for piece in cell_runs(text, verbatim) for part in _parts(piece)
-    ):
-        size = SMALL if level else 1.0
-        look = ' font-style="italic"' * slanted + f' font-size="{SMALL}em"' * bool(level)
-        if level != before:
-            look += f' dy="{round((level - before) / size, 3):g}em"'
-        before = level
-        shown = escape(visible(letters), quote=False)
-        out.append(f"<tspan{look}>{shown}</tspan>" if look else shown)
-    return "".join(out)
-
-
-def _page(text: str, pieces: Sequence[Run]) -> str:
-    return _directed(text, "".join(_element(piece) for piece in pieces).replace("</i><i>", ""))
-
-
-def _directed(text: str, wrapped: str) -> str:
-    return f"<bdi>{wrapped}</bdi>" if runs_to_the_left(text) else wrapped
-
-
-def _element(piece: Run) -> str:
-    if isinstance(piece, str):
-        return escape(visible(piece))
-    if isinstance(piece, Raised):
-        return f"<sup><b>^</b>{piece.text}</sup>"
-    if isinstance(piece, Command):
-        return f"<code>{escape(visible(piece.text))}</code>"
-    under = piece.index + "".join(_below(f) for f in piece.factors)
-    link = "<b>_</b>" if "_" in piece.text else ""
-    out = f"<i>{piece.letter}</i>"
-    if under:
-        out += f"<sub>{link}{under}</sub>"
-    return out + "<u><b>'</b></u>" * piece.primed
-
-
-def _below(factor: Factor) -> str:
-    out = f'<i class="dot">{factor.letter}<b>dot</b></i>' if factor.dotted else f"<i>{factor.letter}</i>"
-    if factor.index:
-        out += f"<sub>{factor.index}</sub>"
-    return f"|{out}|" if factor.absolute else out
-
-
-def _letters(piece: Run) -> str:
-    if isinstance(piece, str):
-        return piece
-    if isinstance(piece, Raised):
-        return piece.text.translate(_RAISED) if set(piece.text) <= set(LEVEL) else f"^{piece.text}"
-    if isinstance(piece, Command):
-        return piece.text
-    link = "_" if "_" in piece.text and piece.index and piece.letter.isascii() else ""
-    return piece.letter + link + piece.index + "".join(_factor(f) for f in piece.factors) + PRIME * piece.primed
-
-
-_RAISED = str.maketrans(LEVEL, HIGH)
-
-
-def _factor(factor: Factor) -> str:
-    out = factor.letter + DOT * factor.dotted + factor.index
-    return f"|{out}|" if factor.absolute else out
-
-
-def _parts(piece: Run) -> Iterator[Part]:
-    """Letters, whether they are slanted, and how far below the line they stand, in their line's size."""
-    if isinstance(piece, Symbol):
-        yield piece.letter, True, 0.0
-        if piece.index:
-            yield piece.index, False, LOWER
-        for factor in piece.factors:
-            yield from ((ch, ch != "|", LOWER) for ch in _factor(factor))
-        if piece.primed:
-            yield PRIME, False, 0.0
-    elif isinstance(piece, Raised) and not set(piece.text) <= set(LEVEL):
-        yield piece.text, False, HIGHER
-    else:
-        yield _letters(piece), False, 0.0
-
-
-def _joined_lettering(parts: Iterable[Part]) -> list[Part]:
-    out: list[Part] = []
-    for letters, slanted, level in parts:
-        if out and out[-1][1:] == (slanted, level):
-            out[-1] = (out[-1][0] + letters, slanted, level)
-        else:
-            out.append((letters, slanted, level))
-    return out

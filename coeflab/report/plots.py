@@ -16,16 +16,17 @@ from coeflab.fits.results.fit_result import Sweep
 from coeflab.fits.results.fitted_model import FittedModel
 from coeflab.fits.results.straight_runs import StraightRuns
 from coeflab.law.added_mass import AddedMass
+from coeflab.law.named_terms import read_term
 from coeflab.law.symbols import ANGULAR, CONTROLS, MOTIONS, primed
-from coeflab.law.terms import read_term
 from coeflab.motion.trajectory import Trajectory
 from coeflab.report.figures.estimator import draw_forms, frame_of
 from coeflab.report.figures.first_page import draw_intervals
+from coeflab.report.figures.law_along import along, draw_along
 from coeflab.report.figures.laws import draw_trace
-from coeflab.report.figures.model import along, draw_along, draw_slices, slices_of
 from coeflab.report.figures.motion import draw_history, draw_track
 from coeflab.report.figures.nouns import MOVED_BY, traces
 from coeflab.report.figures.series import axis_name, is_in_degrees, on_axis, tagged
+from coeflab.report.figures.slices import draw_slices, slices_of
 from coeflab.report.figures.sweep import draw_curves, draw_points
 from coeflab.report.figures.variables import axis_name as name_of_axis
 from coeflab.report.figures.variables import moving, response_name, response_unit
@@ -81,7 +82,8 @@ def plot_body(body: Body, view: str = "side", ax: Axes | None = None) -> Axes:
     InputError
         Another view, or a body without a shape.
     """
-    from coeflab.report.figures.body import FRONT, SIDE, TOP, draw_outline
+    from coeflab.report.figures.body import FRONT, SIDE, TOP
+    from coeflab.report.figures.body_view import draw_outline
     from coeflab.report.figures.three_views import surfaces_of
 
     views = {"side": (SIDE, "x [m]", "z [m]"), "top": (TOP, "x [m]", "y [m]"), "front": (FRONT, "y [m]", "z [m]")}

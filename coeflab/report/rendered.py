@@ -6,10 +6,11 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from coeflab.core.machine import one_thread
-from coeflab.formats.exporting import parameter_files_rendered, placed
+from coeflab.formats.export import parameter_files_rendered, placed
 from coeflab.report.content import document
-from coeflab.report.document import Document, Section, digest_of
+from coeflab.report.document import Document, Section
 from coeflab.report.formats import REPORTERS
+from coeflab.report.reproduction import digest_of
 from coeflab.report.sections.estimates import answer_of_merge, manoeuvre_table, replaced_section
 
 if TYPE_CHECKING:

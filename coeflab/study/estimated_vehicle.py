@@ -24,12 +24,12 @@ from coeflab.core.errors import InputError
 from coeflab.core.files import located, stem
 from coeflab.core.machine import one_thread
 from coeflab.core.text.bounded import log_text
+from coeflab.core.texts import input_error
 from coeflab.core.types import Array
 from coeflab.core.units import positive_typed, three_typed
 from coeflab.fits import BY_DEFAULT
 from coeflab.fits.joint.moving import LEFT_OUT
-from coeflab.formats.export import PlannedExport
-from coeflab.formats.exporting import exports_of
+from coeflab.formats.export import PlannedExport, exports_of
 from coeflab.law.added_mass import NearWall
 from coeflab.law.scaling import Conditions, Scaling, require_hull
 from coeflab.law.symbols import CONTROLS
@@ -42,9 +42,10 @@ from coeflab.motion.turn_limits import linear_growth
 from coeflab.motion.uncertainty.uncertainty import Carried, Question, uncertainty
 from coeflab.study.study import FromShape, Plan, Study
 from coeflab.tables.reading import table_at
-from coeflab.vehicle.assemble import PlannedParameterFile, assemble
+from coeflab.vehicle.assemble import assemble
 from coeflab.vehicle.force_law import ahead_from
 from coeflab.vehicle.from_shape import CLOSED, ESTIMATES, Stated, as_fit, by_series, equipped, lacking, weighed
+from coeflab.vehicle.gathered import PlannedParameterFile
 from coeflab.vehicle.held_to_model import Motions, held_to_model
 from coeflab.vehicle.merge import Merged, estimates_of, merged
 from coeflab.vehicle.parameter_file import ParameterFile, located_refusals, read_parameter_file
@@ -149,10 +150,7 @@ def estimated(
     if scaling is None:
         if not shape.length > 0.0:
             hollow = "" if any(c.volume for c in body.configurations) else f" It has no volume either. {CLOSED}"
-            raise InputError(
-                f"a body {shape.length:g} m long along x, to make the primes by", "a length above zero",
-                advice=f"State one: --length, length under [prime] in its body.toml, or [scaling] in a plan.{hollow}",
-            )  # fmt: skip
+            raise input_error("study.body_long_along", length=shape.length, hollow=hollow)
         scaling = Scaling(shape.length, "length over all")
     point = body.reference_point if plan.reference_point is None else plan.reference_point
     body = replace(body, scaling=scaling, reference_point=point)

@@ -10,7 +10,7 @@ import numpy as np
 
 from coeflab.core.errors import InputError
 from coeflab.core.finding import Finding, Severity
-from coeflab.core.texts import words
+from coeflab.core.texts import input_error, words
 from coeflab.fits import FITS, CompletingFit
 from coeflab.fits.joint.moving import LEFT_OUT, fits_about
 from coeflab.fits.joint.rows import joint_name
@@ -247,9 +247,9 @@ def refuse_empty(fits: Sequence[FitResult]) -> None:
     if not few or any(fit.models for fit in fits) or any(value is not None for value in numbers):
         return
     points, text = int(few[0].statistic or 0), words(few[0])
-    raise InputError(
-        f"{points} usable point{'s' * (points != 1)} of the sweep over {few[0]['variable']}", text.rule,
-        file=few[0].subject, advice=text.advice,
+    raise input_error(
+        "study.usable_point_sweep", few[0].subject, points=points, value="s" * (points != 1), few=few[0]["variable"],
+        expected=text.rule, advice=text.advice,
     )  # fmt: skip
 
 

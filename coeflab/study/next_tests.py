@@ -11,6 +11,7 @@ import numpy as np
 from coeflab.core.errors import InputError, shown
 from coeflab.core.finding import Finding, Severity
 from coeflab.core.machine import stage
+from coeflab.core.texts import input_error
 from coeflab.core.types import Array, brief
 from coeflab.fits.results.fit_result import Sweep
 from coeflab.fits.statistics.designs import FINAL, Response, designed, predicted_u95
@@ -224,9 +225,8 @@ def of_symbol(coefficient: Coefficient) -> Wanted:
     """
     name = primed(coefficient.symbol.removesuffix("'"))
     if coefficient.value is None or not coefficient.u95:
-        raise InputError(
-            f"{name} without {'a value' if coefficient.value is None else 'U95'}", "a value with U95", column="--for",
-            advice="Give a body, whose estimates have both, or a table with three settings.",
+        raise input_error(
+            "study.give_body_whose", column="--for", name=name, value="a value" if coefficient.value is None else "U95",
         )  # fmt: skip
     return Wanted(name, coefficient.value, coefficient.u95, {name.removesuffix("'"): (1.0, coefficient.u95)})
 
@@ -242,9 +242,9 @@ def of_index(parameters: ParameterFile, name: str) -> Wanted:
     *symbols, sign = INDICES[name]
     found = [c for s in symbols if (c := parameters.coefficient(str(s))) is not None and c.value is not None and c.u95]
     if parameters.mass is None or len(found) < len(symbols):
-        raise InputError(
-            f"{name} of a file without {'mass' if parameters.mass is None else 'U95 of all four coefficients'}",
-            f"mass, and {', '.join(map(str, symbols))} with U95", column="--for",
+        raise input_error(
+            "study.file_without", column="--for", name=name,
+            value="mass" if parameters.mass is None else "U95 of all four coefficients", map=", ".join(map(str, symbols)),
         )  # fmt: skip
     values = [float(c.value or 0.0) for c in found]
     mass = float(sign) * parameters.mass.mass_prime, parameters.mass.mass_moment_prime
@@ -291,15 +291,13 @@ def of_manoeuvre(parameters: ParameterFile, name: str, question: Question) -> Wa
     near = [s for s in carried.spreads if s.figure.name.casefold().startswith(name.casefold())]
     if not near:
         figures = ", ".join(s.figure.name for s in carried.spreads)
-        raise InputError(
-            shown(name), f"a coefficient, {', '.join(INDICES)}, or of {question.manoeuvre}: {figures or 'none'}",
-            column="--for", advice="Another manoeuvre may have it.",
+        raise input_error(
+            "study.another_manoeuvre_may", column="--for", found=shown(name), indices=", ".join(INDICES),
+            manoeuvre=question.manoeuvre, value=figures or "none",
         )  # fmt: skip
     found = near[0]
     if found.low is None or found.high is None or found.figure.value is None:
-        raise InputError(
-            f"no interval of {found.figure.name}: {found.why}", "a figure with an interval", column="--for"
-        )
+        raise input_error("study.figure_interval", column="--for", name=found.figure.name, why=found.why)
     importance = next(i for i in carried.importances if i.figure == found.figure.name)
     known = {s: v for s, v in importance.known if parameters.coefficient(s) is not None}
     apart = np.array(carried.varied.covariance)

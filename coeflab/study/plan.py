@@ -16,6 +16,7 @@ from coeflab.core.errors import InputError, shown
 from coeflab.core.files import located, named, shipped, stem, typed
 from coeflab.core.provenance import InputFile, sha256_of
 from coeflab.core.text.toml import read_toml
+from coeflab.core.texts import input_error
 from coeflab.core.types import Array
 from coeflab.fits import BY_DEFAULT, JOINT
 from coeflab.formats.export import PlannedExport
@@ -27,9 +28,9 @@ from coeflab.tables.campaign import FILE, read_campaign
 from coeflab.tables.reading import suited_fit, table_at
 from coeflab.tables.settings import of_datum, read_settings
 from coeflab.tables.words.points import POINT_OF
-from coeflab.vehicle.assemble import PlannedParameterFile
+from coeflab.vehicle.gathered import PlannedParameterFile
 from coeflab.vehicle.inertia import ACCELERATIONS, MEASURED
-from coeflab.vehicle.parameter_file import SHIPPED
+from coeflab.vehicle.schema_versions import SHIPPED
 
 _NAME = re.compile(r"^[\w][\w .+-]{0,79}$")
 
@@ -121,10 +122,8 @@ class StudyKeys(takes.Declaration):
         """A note goes with a datum, and one datum with a point."""
         named = self.reference_point.datum if self.reference_point else ""
         if named and self.datum is not None and not of_datum(named, self.datum):
-            raise InputError(
-                f"a point from {shown(named)} beside datum = {shown(self.datum)}",
-                "one of both",
-                column="reference_point",
+            raise input_error(
+                "study.point_beside_datum", column="reference_point", named=shown(named), datum=shown(self.datum)
             )
         if self.datum_note is not None and not (self.datum or named):
             raise InputError("a note without a datum", "datum, the id that it explains", column="datum_note")
@@ -410,12 +409,7 @@ class PlanFile(takes.Declaration):
     def check(self) -> None:
         """A table or a body at least; parameter files and targets once each."""
         if not self.table and self.joint is None and self.body is None:
-            raise InputError(
-                "no [[table]]",
-                "at least one, or a [body] to estimate from",
-                column="table",
-                advice='Add [[table]] with campaign = "path/to/campaign", or [body] with path = "path/to/body.toml".',
-            )
+            raise input_error("study.least_one_body", column="table")
         names = [f.name.casefold() for f in self.parameter_file]
         for i, f in enumerate(self.parameter_file):
             if names[i] in names[:i]:

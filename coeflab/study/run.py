@@ -17,7 +17,9 @@ from coeflab.core.files import shipped, stem
 from coeflab.core.finding import Finding
 from coeflab.core.machine import one_thread
 from coeflab.core.provenance import InputFile, sha256_of
-from coeflab.fits.joint.rows import joint_name, one_length
+from coeflab.core.texts import input_error
+from coeflab.fits.joint.one_point import one_length
+from coeflab.fits.joint.rows import joint_name
 from coeflab.law.coefficient import Coefficient, Status
 from coeflab.law.symbols import derivative
 from coeflab.study.checking import checked
@@ -26,9 +28,10 @@ from coeflab.study.fitting import FEWEST, fitted, refuse_empty, rejoined
 from coeflab.study.study import Conversion, Plan, Study
 from coeflab.study.symmetry import confirmed, of_bodies
 from coeflab.tables.reading import read_tables, table_at
-from coeflab.vehicle.assemble import PlannedParameterFile, assemble
+from coeflab.vehicle.assemble import assemble
+from coeflab.vehicle.gathered import PlannedParameterFile
 from coeflab.vehicle.parameter_file import located_refusals, read_parameter_file
-from coeflab.vehicle.reference import compare, compare_set, read_references
+from coeflab.vehicle.published_values import compare, compare_set, read_references
 
 if TYPE_CHECKING:
     from coeflab.bodies.body import Body
@@ -79,9 +82,9 @@ def conversions(planned: PlannedConversion, plan: Plan, tables: Sequence[ForceTa
     copies = [settled(t, plan) for t in read_tables(table_at(planned.campaign))]
     originals = [t for t in tables if t.campaign == planned.of]
     if len(copies) != len(originals):
-        raise InputError(
-            f"{len(copies)} tables, and {len(originals)} of {shown(planned.of)}", "as many as the campaign that it is a copy of",
-            column="conversion.of",
+        raise input_error(
+            "study.many_campaign_copy", column="conversion.of", count_of_copies=len(copies), count_of_originals=len(originals),
+            of=shown(planned.of),
         )  # fmt: skip
     for copy, original in zip(copies, originals, strict=True):
         if len(copy) != len(original):
@@ -138,7 +141,7 @@ def run(plan: Plan | str | Path, progress: Progress = lambda _: None) -> Study:
     if not isinstance(plan, Plan):
         return _of_file(plan, progress)
     if plan.exports:
-        from coeflab.formats.exporting import refuse_unknown
+        from coeflab.formats.export import refuse_unknown
 
         refuse_unknown(plan.exports)
     if not plan.tables and not plan.joint:
@@ -272,7 +275,7 @@ def _used(
     refused: tuple[Refused, ...] = ()
     manoeuvres: tuple[Simulation, ...] = ()
     if plan.exports:
-        from coeflab.formats.exporting import exports_of
+        from coeflab.formats.export import exports_of
 
         exports, refused = exports_of(
             plan.exports,
@@ -290,10 +293,7 @@ def _used(
 def _of_file(place: str | Path, progress: Progress) -> Study:
     """The study of the plan at a path; what an option of a fit is to blame for names the file."""
     if not isinstance(place, (str, Path)):
-        raise InputError(
-            f"run({type(place).__name__})", "a Plan, the path of a plan.toml, or the name of a shipped plan",
-            advice="A publication that coeflab.validation reproduces is done already; a campaign or a body goes into a Plan.",
-        )  # fmt: skip
+        raise input_error("study.plan_path_plan", __name__=type(place).__name__)
     from coeflab.study.plan import plan_at, read_plan
 
     file = plan_at(place)
@@ -339,9 +339,9 @@ def _require_kilograms(tables: Sequence[ForceTable], body: Body | None) -> None:
     """Refuse two masses of one body that only their units tell apart; `study.checks.sizes` says where they merely differ."""
     for table, stated, ratio in masses_of_models(tables, body):
         if not 1.0 / UNITS_APART < ratio < UNITS_APART:
-            raise InputError(
-                f"{table.model_mass:g} kg under [inertia] of {table.campaign}, {stated:g} kg in the body.toml", "one mass of one body, in kg",
-                column="inertia.mass", advice="kg? A mass in another unit has it behind the number: \"2.25 t\".",
+            raise input_error(
+                "study.kg_under_inertia", column="inertia.mass", model_mass=table.model_mass, campaign=table.campaign,
+                stated=stated,
             )  # fmt: skip
 
 
@@ -370,9 +370,9 @@ def _missing(
     names = {f.campaign for f in fits}
     for campaign in group.campaigns:
         if campaign not in names:
-            raise InputError(
-                f"no campaign {shown(campaign)} in the plan", f"one of {', '.join(sorted(names))}",
-                column=f"parameter_file.{group.name}",
+            raise input_error(
+                "study.campaign_plan", column=f"parameter_file.{group.name}", campaign=shown(campaign),
+                names=", ".join(sorted(names)),
             )  # fmt: skip
     if not any(f.sweeps for f in fits if f.campaign in group.campaigns):
         return []

@@ -31,10 +31,10 @@ if TYPE_CHECKING:
     from coeflab.motion.uncertainty.uncertainty import Carried
     from coeflab.tables.force_table import ForceTable
     from coeflab.tables.importers import PlannedTable
-    from coeflab.vehicle.assemble import PlannedParameterFile
     from coeflab.vehicle.from_shape import Weighed
+    from coeflab.vehicle.gathered import PlannedParameterFile
     from coeflab.vehicle.parameter_file import ParameterFile
-    from coeflab.vehicle.reference import Comparison, Reference
+    from coeflab.vehicle.published_values import Comparison, Reference
 
 
 @brief

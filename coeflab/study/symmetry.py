@@ -74,14 +74,14 @@ def of_bodies(
     bodies : sequence of Body
         Those that a plan names. A table whose body is none of them, or counts from another datum, stays, and is not confirmed.
     """
-    from coeflab.bodies.images import quarter_turned
+    from coeflab.bodies.images import is_fourfold
 
     selected, right, found = [], set(), []
     moving = {t.name: set(t.varies) for t in tables}
     for t in tables:
         turned = FOURFOLD in t.symmetry and moving[t.name] != moving.get(t.by_symmetry, moving[t.name])
         body = next((b for b in bodies if turned and (b.name, b.datum) == (t.body, t.datum)), None)
-        has = None if body is None else quarter_turned(body, t.reference_point)
+        has = None if body is None else is_fourfold(body, t.reference_point)
         if has is False:
             found.append(Finding.of("symmetry.body", t.name, Severity.WARN, turned=t.by_symmetry, body=t.body))
             continue

@@ -24,7 +24,7 @@ from coeflab.study.secants import secant
 from coeflab.study.validation import against_printed, reynolds_of, validation, without_grid
 from coeflab.tables.campaign import FOURFOLD
 from coeflab.tables.force_table import AT_REST
-from coeflab.vehicle.reference import Relation
+from coeflab.vehicle.published_values import Relation
 
 if TYPE_CHECKING:
     from coeflab.fits.results.fit_result import FitResult
@@ -34,7 +34,7 @@ if TYPE_CHECKING:
     from coeflab.study.study import PlannedTow, Study
     from coeflab.study.validation import Validation
     from coeflab.tables.force_table import ForceTable
-    from coeflab.vehicle.reference import Reference
+    from coeflab.vehicle.published_values import Reference
 
 # A quarter of a turn about x: v -> w, Y -> Z, N -> -M, r -> -q.
 TURNED = {"Zw": ("Yv", 1.0), "Mw": ("Nv", -1.0), "Zq": ("Yr", -1.0), "Mq": ("Nr", 1.0)}

@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from coeflab.law.coefficient import CoefficientSet
     from coeflab.study.study import Study
     from coeflab.tables.force_table import ForceTable
-    from coeflab.vehicle.reference import Reference
+    from coeflab.vehicle.published_values import Reference
 
 
 @brief

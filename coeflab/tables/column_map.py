@@ -193,7 +193,7 @@ def unturned(name: str, meaning: ColumnMap) -> str:
         return ""
     exact = str(replace(meaning, name=wind, negative=False))
     return (
-        f"warning: {shown(name)} is read as {meaning}, a force along the body, but its name is that of {wind}, {ACROSS[wind]} "
+        f"{shown(name)} is read as {meaning}, a force along the body, but its name is that of {wind}, {ACROSS[wind]} "
         f"the flow: slopes would lack C_D0, often a tenth and more. If it is {wind}, call it {exact}"
     )
 

@@ -11,11 +11,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from coeflab.core.axes import Axes
 from coeflab.core.errors import InputError, together
 from coeflab.core.texts import input_error
 from coeflab.core.types import Array, brief
-from coeflab.law.symbols import COMPONENTS
 
 
 @brief
@@ -142,13 +140,3 @@ def first_row(where: NDArray[np.bool_]) -> int | None:
     """The first of some rows, (n,); None where there is none."""
     rows = np.flatnonzero(where)
     return int(rows[0]) if rows.size else None
-
-
-def columns_of(axes: Axes) -> dict[str, tuple[str, float]]:
-    """For every FRD component the table's column and its sign; axes are at right angles, so each is one column."""
-    out = {}
-    for group in (COMPONENTS[:3], COMPONENTS[3:]):
-        for i, name in enumerate(group):
-            j = int(np.argmax(np.abs(axes.rotation[i])))
-            out[name] = group[j], float(axes.rotation[i, j])
-    return out

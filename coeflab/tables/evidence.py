@@ -36,20 +36,28 @@ class Evidence:
 
     Attributes
     ----------
-    text : str
+    statement : str
     key, value : str
         What of campaign.toml follows from it for a slender body; empty where nothing does.
     against : str
         The rate whose sign or axis it contradicts; empty where it contradicts none.
     instead : str
         The rate of the file that turns about the axis whose force and moment vary; empty where the axis is not contradicted.
+    warns : bool
+        Something is wrong, or no slope follows.
     """
 
-    text: str
+    statement: str
     key: str = ""
     value: str = ""
     against: str = ""
     instead: str = ""
+    warns: bool = False
+
+    @property
+    def text(self) -> str:
+        """The statement; with its mark where it is a warning."""
+        return f"{'warning: ' * self.warns}{self.statement}"
 
 
 def turn_of(meaning: ColumnMap, frame: Axes) -> str:
@@ -99,8 +107,9 @@ def _moment_of_the_other_plane(data: Mapping[str, Array], frame: Axes) -> Iterat
         now, meant = (_named(c, frame) for c in (other, own))
         about = f"{now} is about the {'xyz'['KMN'.index(now)]} axis of these axes: {other} of the body"
         yield Evidence(
-            f"warning: {setting} varies, and {plane} has no moment: {about}, which no {setting} makes. If it is the moment of "
-            f"{plane}, map its column as {meant} or -{meant}; if it is {now} as the axes say, the file has no {own} of the body"
+            f"{setting} varies, and {plane} has no moment: {about}, which no {setting} makes. If it is the moment of "
+            f"{plane}, map its column as {meant} or -{meant}; if it is {now} as the axes say, the file has no {own} of the body",
+            warns=True,
         )
 
 
@@ -138,7 +147,7 @@ def evidence(columns: Sequence[Assigned], frame: Axes | None = None) -> tuple[Ev
         Of the file, once it is known; without it the sign of an angle stays open.
     """
     data = {one.meaning.name: one.values for one in columns if one.meaning.role not in ("word", "error")}
-    out = [Evidence(why) for one in columns if (why := unturned(one.column.name, one.meaning))]
+    out = [Evidence(why, warns=True) for one in columns if (why := unturned(one.column.name, one.meaning))]
     angles = [one.meaning.name for one in columns if one.meaning.role == "angle"]
     for angle, component, flow, side, other in (
         ("beta", "Y", "v", "starboard", "port"), ("alpha", "Z", "w", "down", "up"),
@@ -180,12 +189,12 @@ def evidence(columns: Sequence[Assigned], frame: Axes | None = None) -> tuple[Ev
     out += _moment_of_the_other_plane(data, frame) if frame else []
     out += _levers(data, {one.meaning.name: one.meaning for one in columns}, frame)
     if "drag" in data and np.any(ok := np.isfinite(data["drag"])) and np.all(data["drag"][ok] < 0.0):
-        out.append(Evidence("warning: drag is below zero in every row: that is thrust, or -drag is meant"))
+        out.append(Evidence("drag is below zero in every row: that is thrust, or -drag is meant", warns=True))
     x = _frd(data, "X", frame) if frame else data.get("X")
     x = np.empty(0) if x is None else x[np.isfinite(x)]
     if frame and x.size and np.all(x > 0):
-        out.append(Evidence("warning: X is above zero in every row: in FRD that is thrust, not drag" if frame.name == "FRD"
-                            else "warning: X turned to FRD is above zero in every row: that is thrust, not drag"))  # fmt: skip
+        out.append(Evidence("X is above zero in every row: in FRD that is thrust, not drag" if frame.name == "FRD"
+                            else "X turned to FRD is above zero in every row: that is thrust, not drag", warns=True))  # fmt: skip
     elif not frame and x.size and (np.all(x > 0) or np.all(x < 0)):
         out.append(Evidence(f"X is {'positive' if x[0] > 0 else 'negative'} throughout: drag, if x points "
                             f"{'aft' if x[0] > 0 else 'forward'}"))  # fmt: skip

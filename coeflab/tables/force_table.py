@@ -17,7 +17,7 @@ from coeflab.core.types import Array, brief, in_angles, locked, locked_columns
 from coeflab.law.scaling import Conditions, Scaling
 from coeflab.law.symbols import COMPONENTS, MOTIONS
 from coeflab.law.transforms import force_transfer, velocity_transfer
-from coeflab.tables.campaign import InputUncertainty
+from coeflab.tables.input_uncertainty import InputUncertainty
 
 if TYPE_CHECKING:
     import pandas as pd

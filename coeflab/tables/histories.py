@@ -326,10 +326,9 @@ def plateau(
     grown = _grown(columns)
     if grown:
         return _none(Convergence.DIVERGED, grown)
-    steps = _equal(columns, None if at is None else np.asarray(at, dtype=float)[skipped:])
+    steps = _in_equal_steps(columns, None if at is None else np.asarray(at, dtype=float)[skipped:])
     block = -(-n // LONGEST)
-    if block > 1:
-        steps = steps[:, n % block :].reshape(len(names), -1, block).mean(axis=2)
+    steps = _block_means(steps, block)
     late = steps[:, steps.shape[1] // 2 :]
     size = dict(zip(names, np.abs(late.mean(axis=1)), strict=True))
     whole = scales(size, group, length)
@@ -375,14 +374,21 @@ def _none(status: Convergence, why: str) -> Plateau:
 
 
 def _grown(columns: Array) -> str:
-    """Whether the forces ended a thousand times above what they were in the first half."""
+    """How often more the forces are at the end than in the first half, in words; empty below a thousandfold."""
     n = columns.shape[1]
     size = np.sqrt(np.sum(columns**2, axis=0))
     before, last = float(np.median(size[: max(n // 2, 1)])), float(np.median(size[-max(n // 20, 1) :]))
     return f"the forces grew {last / before:.2g}-fold" if before > 0.0 and last > DIVERGED_BY * before else ""
 
 
-def _equal(columns: Array, at: Array | None) -> Array:
+def _block_means(columns: Array, block: int) -> Array:
+    """Means of so many rows each, the last ones whole."""
+    return (
+        columns if block == 1 else columns[:, columns.shape[1] % block :].reshape(len(columns), -1, block).mean(axis=2)
+    )
+
+
+def _in_equal_steps(columns: Array, at: Array | None) -> Array:
     """The columns in equal steps of time."""
     if at is None or len(at) < 3 or not np.all(np.isfinite(at)):
         return columns

@@ -19,7 +19,6 @@ from coeflab.tables.campaign import Cut, cut_of
 from coeflab.tables.column_company import FEW_STRANGE, PROPELLER, proposals
 from coeflab.tables.column_map import ANGLES, FORCES, WIND, ColumnMap, read_column_map, unturned
 from coeflab.tables.column_names import UNKNOWN, named_as
-from coeflab.tables.columns import columns_of
 from coeflab.tables.evidence import Evidence, across_planes, astern, evidence, turn_of
 from coeflab.tables.force_table import FEWEST_SPEEDS
 from coeflab.tables.level_columns import slopes_by_idle_columns
@@ -157,12 +156,12 @@ def interpreted(
     likely = _with_frame(raw, settings)
     frame = frame_of(likely)
     warned = {unturned(c.column.name, c.meaning) for c in columns} if BODY_AXES in raw.stated else set()
-    shows = tuple(_against(e, settings) for e in evidence(columns, frame) if e.text not in warned)
+    shows = tuple(_against(e, settings) for e in evidence(columns, frame) if e.statement not in warned)
     if not any(e.instead for e in shows):  # a doubtful axis comes first
         shows += tuple(_across(columns, frame, settings))
     names = [o.meaning.name for _, o in still if o.meaning and not o.whole]
     shows += tuple(
-        Evidence(f"warning: {key} = {value}, but {place}") for key, value, place in against_words(raw, settings)
+        Evidence(f"{key} = {value}, but {place}", warns=True) for key, value, place in against_words(raw, settings)
     )
     halved = [
         c.name for c, o in zip(raw.columns, offers, strict=True) if o.why.startswith(HALF_ONLY) and "se_" not in c.name
@@ -171,7 +170,7 @@ def interpreted(
         shows += (Evidence(
             f"half of the body, cut at {cut.plane}: {', '.join(cut.doubled)} are doubled" + f"; {', '.join(halved)} left out" * bool(halved)
         ),)  # fmt: skip
-    shows += tuple(Evidence(f"warning: {unread}") for one in columns if (unread := taken_as(one)))
+    shows += tuple(Evidence(unread, warns=True) for one in columns if (unread := taken_as(one)))
     shows += (
         *slopes_by_idle_columns(raw, columns),
         *above_low_aspect(columns, frame, *known_sizes(raw, settings), settings),
@@ -266,9 +265,10 @@ def _no_table(raw: RawTable, offers: Sequence[Proposal]) -> InputError | None:
                 "tables.forces_unread", raw.path, found=found, one=listed([shown(n) for n in [*one][:MOST_IDLE]]),
                 next=next(iter(one.values())),
             )  # fmt: skip
-    return InputError(
-        over or f"no name of a force{', an angle, a speed or a rate' * (not roles & {*SETTINGS})}: {names}", "forces over settings",
-        file=raw.path, advice=f"{IDENTIFY} " * bool(over) + 'If it is one of forces, name its columns: --map "COLUMN=Y [N]", or by --words FILE.toml.',
+    return input_error(
+        "tables.forces_over_settings", raw.path,
+        found=over or f"no name of a force{', an angle, a speed or a rate' * (not roles & {*SETTINGS})}: {names}",
+        advice=f'{IDENTIFY} ' * bool(over) + 'If it is one of forces, name its columns: --map "COLUMN=Y [N]", or by --words FILE.toml.',
     )  # fmt: skip
 
 
@@ -315,7 +315,7 @@ def _across(columns: Sequence[Assigned], frame: Axes | None, settings: Settings)
 def _of_half(offer: Proposal, cut: Cut, frame: Axes | None) -> Proposal:
     """What a column of half of a body is: of the components that the cut loses, nothing that is used."""
     given = offer.meaning
-    own = {c: name for c, (name, _) in columns_of(frame).items()} if frame else {c: c for c in cut.cancelled}
+    own = {c: name for c, (name, _) in frame.columns.items()} if frame else {c: c for c in cut.cancelled}
     if given is None or given.role not in ("force", "error") or given.name not in [own[c] for c in cut.cancelled]:
         return offer
     return Proposal("ignore", f"{HALF_ONLY}, cut at {cut.plane}; {given} of the whole is not known", certain=True)
@@ -364,12 +364,12 @@ def _in_vain(
             vain.append(input_error(
                 "tables.wind_without", raw.path, column=names[wind], wind=wind, lacks=lacks, more=f" at {angle}" * bool(angle),
             ))  # fmt: skip
-    shows = [Evidence("warning: one row: a slope needs several settings. Runs of one sweep are read as one folder")] * (
-        len(raw) == 1
-    )
+    shows = [
+        Evidence("one row: a slope needs several settings. Runs of one sweep are read as one folder", warns=True)
+    ] * (len(raw) == 1)
     if vain and (strange := [c.name for c, o in still if not o.text]):
         shows += [
-            Evidence(f"warning: {v.found}: nothing follows, unless it is one of {listed(strange[:MOST_IDLE])}")
+            Evidence(f"{v.found}: nothing follows, unless it is one of {listed(strange[:MOST_IDLE])}", warns=True)
             for v in vain
         ]
         vain = []
@@ -392,12 +392,13 @@ def _at_rest(raw: RawTable, columns: Sequence[Assigned]) -> Iterator[Evidence]:
     varied = f"; not used, and it varies: {listed([c.name for c in idle[:MOST_IDLE]])}" if idle else ""
     if _is_straight(columns):
         says = "nothing varies but the speed: straight runs give X0', and no slope"
-        yield Evidence(f"{'warning: ' * bool(idle)}{says}{varied}")
+        yield Evidence(f"{says}{varied}", warns=bool(idle))
         return
     column = idle[0].name if idle else "COLUMN"
     yield Evidence(
-        "warning: nothing varies: no column is an angle, a velocity, a rate, a control or a radius, so no slope follows"
-        f"{varied}. Say what was varied, such as --map {shlex.quote(f'{column}=r [rad/s]')}"
+        "nothing varies: no column is an angle, a velocity, a rate, a control or a radius, so no slope follows"
+        f"{varied}. Say what was varied, such as --map {shlex.quote(f'{column}=r [rad/s]')}",
+        warns=True,
     )
 
 
@@ -458,7 +459,7 @@ def _against(shows: Evidence, settings: Settings) -> Evidence:
     declared = settings.get(shows.key)
     if declared is None or " ".join(str(declared.value).split()) == shows.value:
         return shows
-    return replace(shows, text=f"warning: {shows.text}, so {shows.value}; declared is {shows.key} = {declared.value}. One of "
+    return replace(shows, warns=True, statement=f"{shows.statement}, so {shows.value}; declared is {shows.key} = {declared.value}. One of "
                    f"them is wrong: the sign of the angle, of the force, or the axes")  # fmt: skip
 
 

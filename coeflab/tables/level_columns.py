@@ -83,5 +83,5 @@ def _by_column(
                     slopes=tuple(f"{s:.3g}" for s in found.slopes[:SHOWN]), column=idle.name,
                     levels=tuple(v if len(names) else f"{float(v):.4g}" for v in levels[:SHOWN]),
                 ))  # fmt: skip
-                yield Evidence(f"warning: {given.statement}. {given.advice}")
+                yield Evidence(f"{given.statement}. {given.advice}", warns=True)
                 return

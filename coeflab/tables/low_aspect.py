@@ -73,7 +73,7 @@ def above_low_aspect(
         size={"T": "draught", "D": "diameter"}[size],
     )  # fmt: skip
     text = words(found)
-    yield Evidence(f"warning: {text.statement}. {text.advice}")
+    yield Evidence(f"{text.statement}. {text.advice}", warns=True)
 
 
 def _slope(columns: Sequence[Assigned], frame: Axes, settings: Settings) -> float | None:

@@ -136,7 +136,7 @@ def assigned(raw: RawTable, mapping: Mapping[str, ColumnMap], whole: bool = True
     for column in raw.columns:
         given = entry_of(column, mapping)
         if given is None:
-            complaints.append(_unmapped(raw, column))
+            complaints.append(fault("tables.unidentified_column", raw, column, own=shown(column.name)))
             continue
         if given.name not in ("label", "ignore"):
             if given.plain in taken:
@@ -171,10 +171,6 @@ def fault(code: str, raw: RawTable, column: RawColumn, row: int | None = None, *
     line = raw.header_line if row is None else int(raw.lines[row]) if len(raw.lines) else row + 1
     where = f" in {row_name(raw, row)}" if row is not None and raw.path.is_dir() else ""
     return input_error(code, raw.path, (not raw.path.is_dir() and line) or None, header(column), where=where, **facts)
-
-
-def _unmapped(raw: RawTable, column: RawColumn) -> InputError:
-    return fault("tables.unidentified_column", raw, column, own=shown(column.name))
 
 
 def with_unit(raw: RawTable, column: RawColumn, meaning: ColumnMap) -> Assigned:
@@ -485,7 +481,7 @@ def mapped_table(raw: RawTable, campaign: Campaign, table: TableDeclaration) -> 
         for e in out.exclusions
     )
     body = BODY_AXES in raw.stated
-    warned = [text for one in known if not body and (text := unturned(one.column.name, one.meaning))]
+    warned = [f"warning: {text}" for one in known if not body and (text := unturned(one.column.name, one.meaning))]
     words = [*warned, *without_a_setting(raw, known), *raw.remarks]
     more = [f"{len(words) - REMARKS} more remarks; coeflab inspect lists them"] if len(words) > REMARKS else []
     cells = next((one.values[rows] for one in known if one.meaning.name == "cells"), None)

@@ -17,14 +17,14 @@ from coeflab.core.limits import FOAM_FIELD_BYTES, LARGEST_NUMBER, PATTERN_WORK
 from coeflab.core.text.foam import Foam, FoamCase
 from coeflab.core.text.patterns import PatternProblem, pattern
 from coeflab.core.text.series import opened
-from coeflab.core.texts import input_error
+from coeflab.core.texts import input_error, text_of
 from coeflab.core.types import Array
 from coeflab.tables.openfoam_forces import is_vector, listed, number
 from coeflab.tables.openfoam_symmetry import MIRRORS
 from coeflab.tables.raw_table import Stated
 
 # A number and its place.
-Found = tuple[float, str]
+NumberAt = tuple[float, str]
 OPEN = {
     "freestream": "freestreamValue", "freestreamVelocity": "freestreamValue", "inletOutlet": "inletValue",
     "fixedValue": "value", "uniformFixedValue": "uniformValue", "supersonicFreestream": "UInf",
@@ -37,7 +37,7 @@ CLOSED = (
 )  # fmt: skip
 
 
-def definitions(case: FoamCase, names: Sequence[str]) -> dict[str, Foam]:
+def function_objects(case: FoamCase, names: Sequence[str]) -> dict[str, Foam]:
     """What the case says of its function objects: system/controlDict, system/functions, or a file of the same name."""
     out: dict[str, Foam] = {}
     control = case.read("system/controlDict")
@@ -65,7 +65,7 @@ def body_patches(case: FoamCase, part: Foam | None) -> list[str]:
     return found
 
 
-def covered(patches: Sequence[str], known: Mapping[str, set[str]]) -> set[str]:
+def matching_patches(patches: Sequence[str], known: Mapping[str, set[str]]) -> set[str]:
     """The patches that a list of names, groups and patterns takes; a pattern that takes none stands for itself.
 
     Raises
@@ -109,9 +109,9 @@ def walls(case: FoamCase) -> set[str]:
     return {n for n, part in boundary.parts() if case.word(part, "type") == "wall"} if boundary is not None else set()
 
 
-def stated_density(case: FoamCase, part: Foam | None) -> tuple[Found | None, list[str]]:
+def stated_density(case: FoamCase, part: Foam | None) -> tuple[NumberAt | None, list[str]]:
     """The density that forces were multiplied by, and what disagrees."""
-    fluid: Found | None = None
+    fluid: NumberAt | None = None
     for name in ("transportProperties", "physicalProperties", "thermophysicalProperties"):
         properties = case.read(f"constant/{name}")
         for keys in (("rho",), ("mixture", "equationOfState", "rho")):
@@ -156,7 +156,7 @@ def _inflow(case: FoamCase, name: str) -> Stated | None:
         if kind == "SRFFreestreamVelocity":
             relative = case.value(part, "relative")
             if relative is not None and relative[0]:
-                case.note(f"{stated[1]}: UInf of {patch} is relative to the rotating frame; no inflow is taken from it")
+                case.note(text_of("foam.relative_inflow", place=stated[1], patch=patch))
                 silent.append(stated[1])
                 continue
         # A wall may be of type fixedValue too: at rest it says nothing.
@@ -173,15 +173,16 @@ def _inflow(case: FoamCase, name: str) -> Stated | None:
         )  # fmt: skip
         return None
     if any(f[0] != open_[0][0] for f in open_):
-        case.note(f"{folder}/{name}: boundaries state different velocities ({open_[0][1]} and others); none is taken")
+        case.note(text_of("foam.several_inflows", field=f"{folder}/{name}", place=open_[0][1]))
         return None
     return Stated(tuple(open_[0][0]), open_[0][1])
 
 
 def _share_of_mesh(case: FoamCase, zone: str) -> float | None:
     """The share of the cells that a cell zone holds; None where the mesh does not say."""
-    cells, file = stated_cells(case), case.root / "constant/polyMesh/cellZones"
-    if cells is None or not file.is_file():
+    found, file = stated_cells(case), case.root / "constant/polyMesh/cellZones"
+    cells = found.value if found is not None else None
+    if not isinstance(cells, int) or not file.is_file():
         return 1.0 if zone == "all" else None
     if file not in case.files:
         case.files.append(file)
@@ -190,7 +191,7 @@ def _share_of_mesh(case: FoamCase, zone: str) -> float | None:
     match = re.search(
         rb"(?:^|\s)" + re.escape(zone).encode() + rb"\s*\{[^{}]*?cellLabels\s+List<label>\s*(\d+)", content
     )
-    return int(match[1]) / float(str(cells.value)) if match is not None else None
+    return int(match[1]) / cells if match is not None else None
 
 
 def stated_cells(case: FoamCase) -> Stated | None:
@@ -254,7 +255,7 @@ def rotating_frame(case: FoamCase, wanted: str, body: set[str], known: Mapping[s
             continue
         zone = next(iter(case.listed(part, "cellZone") or case.listed(part, "cellSet")), "")
         share = _share_of_mesh(case, zone) if zone else None
-        still = body & covered(case.listed(part, "nonRotatingPatches"), known)
+        still = body & matching_patches(case.listed(part, "nonRotatingPatches"), known)
         rotor = (
             "as the option rotation says so" if wanted == "none"
             else "" if wanted == "body"
@@ -264,13 +265,9 @@ def rotating_frame(case: FoamCase, wanted: str, body: set[str], known: Mapping[s
         )  # fmt: skip
         where = f"constant/MRFProperties, {name}"
         if rotor:
-            case.note(
-                f"{where}: not taken as the motion of the body, {rotor}; the option rotation=body says that it is"
-            )
+            case.note(text_of("foam.rotor", place=where, why=rotor))
         elif wanted != "body" and share is None:
-            case.note(
-                f"{where}: no file says how much of the mesh it covers; give the option rotation=body or rotation=none"
-            )
+            case.note(text_of("foam.unknown_frame", place=where))
             out.append(Frame(None, where))
         else:
             out.append(_frame(case, part, part, f"MRFProperties, {name}"))
@@ -284,7 +281,7 @@ def _frame(case: FoamCase, part: Foam, speeds: Foam, what: str) -> Frame:
     omega, rpm = case.value(speeds, "omega"), case.value(speeds, "rpm")
     rate = omega[0] if omega is not None else rpm[0] * math.pi / 30.0 if rpm is not None and is_number(rpm[0]) else None
     if axis is None or origin is None or not is_vector(axis[0]) or not is_vector(origin[0]) or not is_number(rate):
-        case.note(f"constant/{what}: axis, origin or a constant rate is not stated; no motion is taken")
+        case.note(text_of("foam.incomplete_frame", place=what))
         return Frame(None, f"constant/{what}")
     unit = np.array(axis[0], dtype=float)
     if not np.any(unit):
@@ -298,7 +295,7 @@ def is_number(value: Any) -> bool:
     return isinstance(value, (int, float)) and not isinstance(value, bool) and abs(value) < LARGEST_NUMBER
 
 
-def motion(
+def body_motion(
     case: FoamCase, frame: Frame | None, point: tuple[list[float], str] | None, name: str
 ) -> dict[str, Stated]:  # fmt: skip
     """Velocity and rates of the body through the water at rest, in the solver's axes.
@@ -322,7 +319,7 @@ def motion(
     if frame is not None and frame.turning is not None:
         out.update({n: Stated(float(w) + 0.0, frame.place) for n, w in zip("pqr", frame.turning[0])})
         if point is None:
-            case.note("the velocity at the reference point is not stated, as no file states CofR")
+            case.note(text_of("foam.no_centre"))
             return out
     if inflow is None:
         return out
@@ -333,7 +330,7 @@ def motion(
         velocity = velocity + np.cross(omega, np.array(point[0]) - origin)
         place = f"{place}, {frame.place}, {point[1]}"
         if np.any(np.cross(omega, water)):
-            case.note(f"{inflow.place}: an inflow across the axis of {frame.place} is not steady in the turning frame")
+            case.note(text_of("foam.unsteady_inflow", place=inflow.place, frame=frame.place))
     out.update({n: Stated(float(v) + 0.0, place) for n, v in zip("uvw", velocity)})
     out["U"] = Stated(float(np.linalg.norm(velocity)), place)
     return out
@@ -378,10 +375,10 @@ def read_log(case: FoamCase, application: str) -> tuple[dict[str, str], str, boo
                 tail = stream.read(1 << 14).decode("utf-8", "replace")
         case.files.append(file)
         build = re.search(r"^Build\s*:\s*(.+)$", head, re.MULTILINE)
-        com = re.search(r"OPENFOAM=(\d+)|\bv(\d{4})\b", build[1]) if build is not None else None
+        openfoam_com = re.search(r"OPENFOAM=(\d+)|\bv(\d{4})\b", build[1]) if build is not None else None
         words = {"solver": program[1]}
-        if com is not None:
-            words |= {"version": f"v{com[1] or com[2]}", "fork": "openfoam.com"}
+        if openfoam_com is not None:
+            words |= {"version": f"v{openfoam_com[1] or openfoam_com[2]}", "fork": "openfoam.com"}
         elif build is not None:
             words |= {"version": build[1].strip(), "fork": "openfoam.org"}
         if (met := re.search(r"solution converged in (\d+) iterations", tail)) is not None:

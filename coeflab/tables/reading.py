@@ -29,8 +29,9 @@ from coeflab.tables.transposed import upright
 
 if TYPE_CHECKING:
     from coeflab.core.text.delimited import Cells
-    from coeflab.tables.campaign import Campaign, InputUncertainty, TableDeclaration
+    from coeflab.tables.campaign import Campaign, TableDeclaration
     from coeflab.tables.force_table import ForceTable
+    from coeflab.tables.input_uncertainty import InputUncertainty
     from coeflab.tables.mapping import Assigned
     from coeflab.tables.raw_table import RawTable
 
@@ -353,9 +354,9 @@ def _contradicted(columns: Sequence[Assigned], campaign: Campaign) -> Iterator[s
     """What the numbers show against the signs of rates and angles that a campaign declares, as an import would ask."""
     for shows in evidence(columns, campaign.axes):
         if shows.against:
-            yield f"warning: {shows.text}"
+            yield f"warning: {shows.statement}"
             continue
         name = shows.key.partition(".")[2]
         words = campaign.signs.get(name) if name else None
         if words and angle_sign(name, shows.value) != angle_sign(name, words):
-            yield f"warning: {shows.text}, so {shows.value}; declared is the opposite"
+            yield f"warning: {shows.statement}, so {shows.value}; declared is the opposite"

@@ -78,9 +78,10 @@ class RunList:
                 if run not in out and name in self.runs and name not in taken and times[name] == 1
             }
         if not out and self.runs and runs:
-            raise InputError(
-                f"none of its {len(self.runs)} names is a run" if len(self.runs) > 1 else f"{next(iter(self.runs))}, which is no run",
-                f"names of runs: {named(runs)}", file=self.path,
+            raise input_error(
+                "tables.names_runs", self.path,
+                found=f"none of its {len(self.runs)} names is a run" if len(self.runs) > 1 else f"{next(iter(self.runs))}, which is no run",
+                named=named(runs),
             )  # fmt: skip
         return out
 

@@ -22,6 +22,7 @@ from coeflab.core.units import quantity, with_unit
 from coeflab.law.scaling import Scaling, require_hull
 from coeflab.tables import campaign
 from coeflab.tables.column_map import ColumnMap, read_column_map
+from coeflab.tables.input_uncertainty import InputUncertainty
 from coeflab.tables.raw_table import HALF_MODEL
 from coeflab.tables.vocabulary import vocabulary
 from coeflab.tables.words.above import of_the_test
@@ -35,7 +36,7 @@ SAME_SIZE = 0.01  # share by which a setting may differ from the words of the fi
 CONFIRMED = ("confirmed", "from ")
 _KINDS = {
     "campaign": campaign.CampaignHead, "axes": campaign.CampaignAxes, "scaling": Scaling, "conditions": campaign.CampaignConditions,
-    "source": campaign.TableSource, "inertia": campaign.TowedInertia, "uncertainty": campaign.InputUncertainty, "table": campaign.TableDeclaration,
+    "source": campaign.TableSource, "inertia": campaign.TowedInertia, "uncertainty": InputUncertainty, "table": campaign.TableDeclaration,
 }  # fmt: skip
 SECTIONS = {section: tuple(f.name for f in fields(kind)) for section, kind in _KINDS.items()}
 ARM_POINT, TABLE_POINT = "table.arm_point", "table.reference_point"

@@ -9,6 +9,7 @@ import numpy as np
 
 from coeflab.core.axes import parse_axes
 from coeflab.core.errors import InputError
+from coeflab.core.texts import input_error
 from coeflab.core.units import quantity
 from coeflab.law.scaling import doubtful_size, doubtful_viscosity, speaks_of_air
 from coeflab.tables.raw_table import RawTable, Stated
@@ -70,9 +71,10 @@ def overruled(raw: RawTable, settings: Settings) -> list[InputError]:
                 else str(stated.value)
             )
             words = ", ".join(map(str, one.value)) if isinstance(one.value, list) else str(one.value)
-            out.append(InputError(
-                f"{key} = {words}", f"{value.casefold() if isinstance(stated.value, bool) else value}, as the source states: {stated.place}",
-                file=raw.path, column=key, advice=ADVICE.get(key, f"Leave {key} out: what the source states holds. If the source is wrong, correct it there."),
+            out.append(input_error(
+                "tables.source_states", raw.path, column=key, key_2=key, words=words,
+                value=value.casefold() if isinstance(stated.value, bool) else value, place=stated.place,
+                advice=ADVICE.get(key, f"Leave {key} out: what the source states holds. If the source is wrong, correct it there."),
             ))  # fmt: skip
     return out
 

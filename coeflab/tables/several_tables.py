@@ -78,8 +78,7 @@ def _straight_ahead(found: Interpretation) -> tuple[float, float]:
 
 
 def _placed(name: str, shows: Evidence) -> Evidence:
-    head = "warning: " * shows.text.startswith("warning: ")
-    return replace(shows, text=f"{head}{name}: {shows.text.removeprefix('warning: ')}")
+    return replace(shows, statement=f"{name}: {shows.statement}")
 
 
 def questions_together(

@@ -18,7 +18,7 @@ from coeflab.law.symbols import ANGULAR, COMPONENTS, LINEAR, MOMENTS, MOTIONS
 from coeflab.tables.assumptions import INERTIA, assumed
 from coeflab.tables.campaign import CENTRES, SIDES, SIGNED, Campaign, Cut, TableDeclaration, TowedInertia, cut_of
 from coeflab.tables.column_map import WIND
-from coeflab.tables.columns import Columns, columns_of, first_row
+from coeflab.tables.columns import Columns, first_row
 from coeflab.tables.force_table import DRIVEN, Declared, Exclusion, ForceTable, running_rows
 from coeflab.tables.wind_axes import in_body_axes
 
@@ -56,7 +56,7 @@ def force_table(columns: Columns, campaign: Campaign, table: TableDeclaration) -
         notes.append(
             f"{', '.join(wind)} turned to body axes by the flow of each row" + f" ({', '.join(still)})" * bool(still)
         )
-    sources = columns_of(campaign.axes)
+    sources = campaign.axes.columns
     usable, exclusions = _exclusions(columns, campaign, table, {c: s for c, (s, _) in sources.items()})
     if table.contains_thrust is not False:
         exclusions = (*exclusions, *_driven(columns, usable))

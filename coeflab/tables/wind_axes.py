@@ -12,7 +12,7 @@ from coeflab.core.errors import InputError, together
 from coeflab.core.types import Array
 from coeflab.law.symbols import LINEAR
 from coeflab.tables.column_map import WIND
-from coeflab.tables.columns import Columns, columns_of, first_row
+from coeflab.tables.columns import Columns, first_row
 from coeflab.tables.force_table import FEWEST_SPEEDS
 
 STRAIGHT, SIDEWAYS = 1e-12, 1e-3  # sine of an angle that is none; cosine of one beyond which Y says nothing of C
@@ -43,7 +43,7 @@ def in_body_axes(columns: Columns, axes: Axes, linear: Array) -> Columns:
         A part that X, Y or Z needs is missing: drag, lift at an incidence, the side force (or Y) at a drift angle, or the
         flow itself; X or Z of the body beside drag, or Y beside side.
     """
-    sources = columns_of(axes)
+    sources = axes.columns
     if complaints := list(_wind_complaints(columns, {c: s for c, (s, _) in sources.items()})):
         raise together(complaints)
     u, sin_b, w = (linear / np.linalg.norm(linear, axis=1)[:, None]).T

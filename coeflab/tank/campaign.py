@@ -9,7 +9,6 @@ from __future__ import annotations
 import hashlib
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -18,23 +17,23 @@ import numpy as np
 from coeflab.core.provenance import sha256_of
 from coeflab.core.text.csv_rows import csv_text
 from coeflab.core.text.toml import quoted, value
-from coeflab.core.types import Array, brief
+from coeflab.core.types import Array
 from coeflab.core.version import VERSION
 from coeflab.core.wording import natural, one_line
 from coeflab.law.symbols import ANGULAR, COMPONENTS, CONTROL_COLUMNS, FORCES, LINEAR, MOTIONS
 from coeflab.tables.campaign import CUTS, FILE, FOURFOLD, PORT_STARBOARD, UP_DOWN
 from coeflab.tables.histories import Convergence
 from coeflab.tables.raw_table import RawTable, Run
-from coeflab.tables.run_summary import RunSummary, summarised
-from coeflab.tank.jobs import Job, JobState, Progressed
-from coeflab.tank.plateau import on_plateau, until
+from coeflab.tables.run_summary import RunSummary
+from coeflab.tank.fourfold import SOURCES, by_fourfold_symmetry
+from coeflab.tank.jobs import JobState
 from coeflab.tank.tank import Tank
 from coeflab.tank.test_matrix import Half, Kind, TowCondition
 from coeflab.tank.towed_body import TowedBody
+from coeflab.tank.towed_run import TowedRun
 
 RUNS, HISTORIES = "runs.csv", "histories"
 HISTORY_ROWS = 200  # of the history of a run that the campaign keeps
-CONVERGED = "converged"
 SIX = ("Yv", "Nv", "Zw", "Mw", "Yr", "Nr")
 REPORTED = {
     Half.WHOLE: tuple(COMPONENTS), Half.UPPER: CUTS[UP_DOWN].doubled, Half.PORT: CUTS[PORT_STARBOARD].doubled,
@@ -42,89 +41,7 @@ REPORTED = {
 LABELS = ("kind", "grid", "half", "status")
 VARIANT = "variant"
 LONG_CONTROLS = {short: name for name, short in CONTROL_COLUMNS.items()}
-_QUARTER = {"v": ("w", 1.0), "w": ("v", -1.0), "q": ("r", 1.0), "r": ("q", -1.0),
-            "Y": ("Z", 1.0), "Z": ("Y", -1.0), "M": ("N", 1.0), "N": ("M", -1.0)}  # fmt: skip
 SMOOTH = "none per point: a smooth law, whose fits do not show the scatter of the methods"
-
-
-@brief
-@dataclass(frozen=True, slots=True, eq=False)
-class TowedRun:
-    """One condition as it came out.
-
-    Attributes
-    ----------
-    condition : TowCondition
-    state : JobState
-    why : str
-        What shows a state that is not finished.
-    summary : RunSummary or None
-        Means over the plateau, N and N m, whole body, FRD; None where nothing was run.
-    remarks : tuple of str
-        Of the mesh and of the run.
-    case, mesh : str
-        Keys of the run and of the mesh that it needs; empty for a method without runs.
-    history : Run or None
-        For the short history that the campaign keeps.
-    short : bytes
-        That short history, of a run whose fields and history are gone (`coeflab.tank.earlier`).
-    """
-
-    condition: TowCondition
-    state: JobState
-    why: str = ""
-    summary: RunSummary | None = None
-    remarks: tuple[str, ...] = ()
-    case: str = ""
-    mesh: str = ""
-    history: Run | None = None
-    short: bytes = b""
-
-    @property
-    def counts(self) -> bool:
-        """Whether fits may use it: finished, and on a plateau by the rule of all runs."""
-        return self.state is JobState.FINISHED and self.status == CONVERGED
-
-    @property
-    def status(self) -> str:
-        """As the column of the table has it: ``converged``, or what it is instead."""
-        if self.state is JobState.FINISHED and self.summary is not None:
-            return str(self.summary.status)
-        return "not run" if self.state is JobState.WAITING else str(self.state)
-
-
-def towed_run(
-    condition: TowCondition, progressed: Progressed, jobs: Mapping[str, Job], job: Job, history: Run | None,
-    mesh_remarks: Sequence[str] = (),
-) -> TowedRun:  # fmt: skip
-    """A condition with what its job left.
-
-    Parameters
-    ----------
-    condition : TowCondition
-    progressed : Progressed
-        State of its job.
-    jobs : mapping of str to Job
-        All of the tow, for the mesh.
-    job : Job
-    history : Run or None
-        As the solver reads it, up to where the plateau was recognised; None where there is none.
-    mesh_remarks : sequence of str
-    """
-    counted = history
-    if history is not None and progressed.plateau:
-        counted = until(history, len(history.history), on_plateau(history).first)
-    meshes = [jobs[name].key for name in job.needs if name in jobs]
-    return TowedRun(
-        condition,
-        progressed.state,
-        progressed.why,
-        None if counted is None or not len(counted.history) else summarised(counted, condition.name, steady=True),
-        (*mesh_remarks, *progressed.remarks),
-        job.key,
-        "+".join(meshes),
-        history,
-    )
 
 
 def rows_of(tank: Tank, table: RawTable) -> tuple[TowedRun, ...]:
@@ -188,13 +105,13 @@ def campaign_files(
         Without a table where no condition has a mean.
     """
     groups = _grouped(runs)
-    turned = _by_fourfold_symmetry(groups) if FOURFOLD in tank.symmetry else {}
+    turned = by_fourfold_symmetry(groups) if FOURFOLD in tank.symmetry else {}
     files: dict[str, bytes] = {}
     declared: list[str] = []
     for name, group in {**groups, **turned}.items():
         if not any(r.summary is not None and r.summary.means for r in group):
             continue
-        origin = f"by fourfold symmetry, from {_SOURCES[name]}.csv turned by 90 deg about x" if name in turned else ""
+        origin = f"by fourfold symmetry, from {SOURCES[name]}.csv turned by 90 deg about x" if name in turned else ""
         files[f"{name}.csv"], notes = _table(group, origin)
         declared.append(
             _declared(
@@ -242,45 +159,6 @@ def _table_name(condition: TowCondition, kinds: set[Kind]) -> str:
     usual = {Kind.DRIFT: (Half.WHOLE, Half.UPPER), Kind.ATTACK: (Half.WHOLE, Half.PORT)}.get(condition.kind, ())
     is_usual = not usual or half in usual
     return str(condition.kind) if is_usual else f"{condition.kind}_{'port' if half is Half.PORT else 'upper'}"
-
-
-_SOURCES = {"attack": "drift", "arm_pitch": "arm"}
-
-
-def _by_fourfold_symmetry(groups: Mapping[str, Sequence[TowedRun]]) -> dict[str, list[TowedRun]]:
-    """Attack from drift and a pitching arm from a yawing one, where they were not run: the same rows a quarter of a turn on."""
-    return {
-        name: [_turned(r, name) for r in groups[source]]
-        for name, source in _SOURCES.items()
-        if name not in groups and source in groups
-    }
-
-
-def _turned(run: TowedRun, kind: str) -> TowedRun:
-    """A run as it would be had body and motion been turned by 90 deg about x: starboard becomes down."""
-    c = run.condition
-    motion = dict(zip(MOTIONS, (*c.velocity, *c.rates), strict=True))
-    new = dict.fromkeys(MOTIONS, 0.0)
-    for name, x in motion.items():
-        to, sign = _QUARTER.get(name, (name, 1.0))
-        new[to] = sign * float(x) + 0.0
-    condition = TowCondition(
-        c.name, Kind.ATTACK if kind == "attack" else c.kind, np.array([new[m] for m in LINEAR]),
-        np.array([new[m] for m in ANGULAR]), {}, Half.PORT if c.half is Half.UPPER else c.half, c.grid, c.variant,
-    )  # fmt: skip
-    s = run.summary
-    if s is None:
-        return TowedRun(condition, run.state, run.why, None, run.remarks, run.case, run.mesh)
-    means, errors = {}, {}
-    for name, x in s.means.items():
-        to, sign = _QUARTER.get(name, (name, 1.0))
-        means[to] = sign * x + 0.0
-        if name in s.errors:
-            errors[to] = s.errors[name]
-    summary = RunSummary(
-        s.name, s.status, s.why, means, errors, iterations=s.iterations, stated_conditions=s.stated_conditions
-    )
-    return TowedRun(condition, run.state, run.why, summary, run.remarks, run.case, run.mesh)
 
 
 def _table(group: Sequence[TowedRun], origin: str) -> tuple[bytes, dict[str, list[str]]]:
@@ -380,7 +258,7 @@ def _declared(
     if len({r.condition.grid for r in group}) > 1:
         lines.append(f"select = {value({'grid': 'medium', 'reason': 'grid study only'})}")
     if origin:
-        source = f"by_symmetry = {quoted(f'{_SOURCES[name]}.csv')}"
+        source = f"by_symmetry = {quoted(f'{SOURCES[name]}.csv')}"
         lines.append(f"{source:<41} # turned by 90 deg about x: stated, not run")
     return "\n".join(lines)
 
@@ -390,7 +268,7 @@ def _campaign_text(
     declared: Sequence[str], turned: Sequence[str], origin: str, kind: str,
 ) -> str:  # fmt: skip
     finished = sum(r.counts for r in runs)
-    stated = [*tank.by_symmetry, *(f"{t}.csv from {_SOURCES[t]}.csv by fourfold symmetry" for t in turned)]
+    stated = [*tank.by_symmetry, *(f"{t}.csv from {SOURCES[t]}.csv by fourfold symmetry" for t in turned)]
     files = "; ".join(f"{name} sha256 {sha256_of(path)[:16]}..." for name, path in inputs.items())
     at = tank.conditions
     how = (

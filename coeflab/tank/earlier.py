@@ -21,13 +21,15 @@ from coeflab.core.provenance import sha256_of
 from coeflab.core.text.csv_rows import plain
 from coeflab.core.text.records import OrNone, read_record
 from coeflab.core.text.toml import read_text, read_toml
+from coeflab.core.texts import input_error
 from coeflab.tables.campaign import FILE
 from coeflab.tables.histories import Convergence
 from coeflab.tables.raw_table import Stated
 from coeflab.tables.run_summary import RunSummary
-from coeflab.tank.campaign import HISTORIES, RUNS, TowedRun
+from coeflab.tank.campaign import HISTORIES, RUNS
 from coeflab.tank.jobs import EARLIER, Job, JobState, Progressed, or_nan, progress, write_progress
 from coeflab.tank.test_matrix import TowCondition
+from coeflab.tank.towed_run import TowedRun
 
 _FORCE = re.compile(r"(?P<error>se_)?(?P<name>[XYZKMN])(?P<patch>\(.+\))? \[(?P<unit>N|N\*m)\]")
 _ROW = {
@@ -97,9 +99,9 @@ def matching(campaign: Path, jobs: Sequence[Job]) -> dict[str, Mapping[str, str]
         if words is not None and (words["case sha256"], words["mesh sha256"]) == (job.key, mesh):
             out[job.name] = words
     if not out:
-        raise InputError(f"{len(ended)} conditions that ended, none with a case and mesh of this tow", "the same keys in "
-                         f"{RUNS}", file=campaign, column="--finished",
-                         advice="Tow with the tank.toml beside that campaign, the same body and the same version of the solver.")  # fmt: skip
+        raise input_error(
+            "tow.conditions_ended_none", campaign, column="--finished", count_of_ended=len(ended), runs=RUNS,
+        )  # fmt: skip
     return out
 
 

@@ -13,6 +13,7 @@ from coeflab.bodies import body as plain
 from coeflab.core.errors import InputError
 from coeflab.core.files import located, typed
 from coeflab.core.missed import suggesting
+from coeflab.core.texts import input_error
 from coeflab.core.types import in_angles
 from coeflab.tank import tow as tank_room
 from coeflab.tank.tank import Tank
@@ -126,9 +127,6 @@ def tow(body: str | Path | plain.Body, matrix: str | Path | None = None, *, solv
     else:
         raise InputError(f"a {type(body).__name__}", "a body, a path, or the name of a shipped body", column="body")
     if isinstance(matrix, str) and "\n" in matrix:
-        raise InputError(
-            "the text of a matrix", "the file that holds it", column="matrix",
-            advice='Path("next.toml").write_text(text), and matrix="next.toml".',
-        )  # fmt: skip
+        raise input_error("tow.text_matrix", column="matrix")
     file = None if matrix is None else typed(matrix)
     return Tow(*tank_room.read(place, file, solver, runner), file)

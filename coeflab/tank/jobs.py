@@ -25,7 +25,7 @@ from coeflab.core.files import write_atomically
 from coeflab.core.text.records import OrNone, plain_name, read_record
 from coeflab.core.types import brief
 from coeflab.core.wording import finite
-from coeflab.tank.processes import lives
+from coeflab.tank.processes import is_alive
 
 if sys.platform != "win32":
     import fcntl
@@ -324,7 +324,7 @@ def idle_meshes(jobs: Sequence[Job], left: Collection[str]) -> frozenset[str]:
 
 def _is_carried_out(folder: Path, found: Progressed) -> bool:
     if found.host == socket.gethostname():
-        return lives(found.process, found.started)
+        return is_alive(found.process, found.started)
     try:
         return time.time() - (folder / STATE).stat().st_mtime < SILENT
     except OSError:

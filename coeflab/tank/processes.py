@@ -25,7 +25,7 @@ def started(process: int) -> float:
     return float(found[19]) if found else nan
 
 
-def lives(process: int, since: float) -> bool:
+def is_alive(process: int, since: float) -> bool:
     """Whether a process lives and is the one that began then.
 
     Parameters
@@ -50,14 +50,14 @@ def lives(process: int, since: float) -> bool:
     return True
 
 
-def _of(process: int, name: str) -> str:
+def _proc_file(process: int, name: str) -> str:
     return leading_bytes(PROC / str(process) / name, 1 << 16).decode("utf-8", "replace")
 
 
 def _stat(process: int) -> list[str]:
     """Fields of /proc/PID/stat behind the name, the state first; empty where there are none."""
     try:
-        return _of(process, "stat").rpartition(")")[2].split()
+        return _proc_file(process, "stat").rpartition(")")[2].split()
     except OSError:
         return []
 
@@ -77,7 +77,7 @@ def memory(session: int) -> float:
     total = 0.0
     for process in of_session(session):
         with suppress(OSError, ValueError, IndexError):  # it ended meanwhile
-            text = _of(process, "status")
+            text = _proc_file(process, "status")
             total += 1024.0 * float(text.partition("VmHWM:")[2].split(maxsplit=1)[0])
     return total
 

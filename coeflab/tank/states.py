@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from math import isfinite, nan
 from pathlib import Path
 
-from coeflab.core.errors import InputError
+from coeflab.core.texts import input_error
 from coeflab.core.types import brief
 from coeflab.core.wording import natural
 from coeflab.tank.jobs import JOB, Job, JobState, Progressed, idle_meshes, progress, read_job
@@ -51,9 +51,7 @@ def states_of(folder: Path) -> tuple[JobRow, ...]:
     """
     jobs = sorted((read_job(path.parent) for path in _found(folder)), key=lambda j: (bool(j.needs), natural(j.name)))
     if not jobs:
-        raise InputError(
-            "no jobs", "the folder of a tow", file=folder, advice="`coeflab tow BODY --out FOLDER` begins one."
-        )
+        raise input_error("tow.folder_tow", folder)
     return rows_of(jobs)
 
 

@@ -26,11 +26,11 @@ from coeflab.tank.jobs import JobState
 if TYPE_CHECKING:
     from coeflab.study.study import Study
     from coeflab.study.towed import TowedRow
-    from coeflab.tank.campaign import TowedRun
     from coeflab.tank.jobs import Job
     from coeflab.tank.states import JobRow
     from coeflab.tank.tank import Tank
     from coeflab.tank.test_matrix import TowCondition
+    from coeflab.tank.towed_run import TowedRun
 
 NAME, MOTION, LONGEST, LONGEST_WHY = 20, 17, 44, 42  # letters
 SIGN_OPEN = "sign open"

@@ -183,7 +183,7 @@ def _where(file: TomlFile, named: Path | None, given: Path | None) -> Path:
     if named is None and given is None:
         raise file.fail("tank.body", "nothing", "the path of a body.toml, or a shipped name", "Add tank.body.")
     if named is None or given is None:
-        return _body_file(cast(Path, given if named is None else named)).resolve()
+        return _body_file(cast("Path", given if named is None else named)).resolve()
     one, other = _body_file(named).resolve(), _body_file(given).resolve()
     if one != other:
         raise file.fail("tank.body", shown(named), f"{shown(given)}, the body that is to be towed, or no key at all")
@@ -234,7 +234,7 @@ def _options(
             complaints += [why, *why.others]
             continue
         if name == chosen:
-            out = {f.name: getattr(read, f.name) for f in fields(cast(Any, read))}
+            out = {f.name: getattr(read, f.name) for f in fields(cast("Any", read))}
     if complaints:
         raise together(complaints)
     return out

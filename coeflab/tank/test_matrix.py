@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from coeflab.core.errors import InputError, shown
+from coeflab.core.texts import input_error
 from coeflab.core.types import Array, brief, locking
 from coeflab.tables.campaign import FOURFOLD, PORT_STARBOARD, UP_DOWN
 
@@ -218,25 +219,6 @@ def _rounded(step: float) -> float:
     return float(np.floor(step / unit + EXACT) * unit)
 
 
-def default_matrix(body: TowedBody | None, speed: float, length: float | None = None) -> tuple[TowCondition, ...]:
-    """The conditions that the six derivatives need.
-
-    Parameters
-    ----------
-    body : TowedBody or None
-        Its mirrors say which side and which half are run; None has no symmetry.
-    speed : float
-        m/s.
-    length : float, optional
-        Of the primes, m; the body's unless given.
-    """
-    if length is None:
-        if body is None:
-            raise InputError("neither a body nor a length", "one of them", column="scaling.length")
-        length = body.length
-    return conditions(default_sweeps(body, length), body, speed, length)
-
-
 def conditions(sweeps: Sweeps, body: TowedBody | None, speed: float, length: float) -> tuple[TowCondition, ...]:
     """The conditions of sweeps, a straight run first in every domain that a sweep has.
 
@@ -292,10 +274,7 @@ def _image(name: str, among: Sequence[TowCondition], has: Sequence[str]) -> TowC
         raise InputError(shown(name), f"a condition of one motion: {known}", column="matrix.pairs")
     plane = UP_DOWN if found.kind is Kind.ARM and found.rates[1] else sweep[found.kind]
     if plane not in has:
-        raise InputError(
-            f"the pair of {name} of a body without {plane} symmetry", "a body with it", column="matrix.pairs",
-            advice="Name both angles: nothing is stated by symmetry.",
-        )  # fmt: skip
+        raise input_error("tow.pair_body_without", column="matrix.pairs", name=name, plane=plane)
     other = name.translate(str.maketrans("+-", "-+"))
     if other in {c.name for c in among}:
         raise InputError(f"{other} twice", "a condition that is run on one side", column="matrix.pairs")
@@ -308,9 +287,8 @@ def _direction(drift: float, attack: float) -> Array:
     v, w = np.sin(drift), np.sin(attack)
     ahead = 1.0 - v * v - w * w
     if not ahead > 0.0:
-        raise InputError(
-            f"a drift of {np.degrees(drift):.4g} and an attack of {np.degrees(attack):.4g} deg at once",
-            "angles whose sines leave a speed ahead", column="matrix",
+        raise input_error(
+            "tow.drift_attack_deg", column="matrix", degrees=np.degrees(drift), degrees_2=np.degrees(attack),
         )  # fmt: skip
     return np.array([np.sqrt(ahead), v, w])
 
@@ -373,10 +351,8 @@ def _check(found: Sequence[TowCondition], has: Sequence[str]) -> None:
             for other in found[:i]:
                 same = not other.controls and np.allclose(other.velocity, velocity, rtol=0.0, atol=1e-6 * c.speed)
                 if same and np.allclose(other.rates, rates, rtol=1e-6, atol=0.0) and c.kind is not Kind.STRAIGHT:
-                    raise InputError(
-                        f"{shown(c.name)}, the mirror image of {shown(other.name)}",
-                        f"one side of a body with {plane} symmetry", column="matrix",
-                        advice="Leave one of them out, or set symmetry = false to tow both sides of the whole body.",
+                    raise input_error(
+                        "tow.mirror_image", column="matrix", name=shown(c.name), name_2=shown(other.name), plane=plane,
                     )  # fmt: skip
 
 
@@ -398,8 +374,8 @@ def with_studies(matrix: Sequence[TowCondition], studies: Sequence[Study]) -> tu
     for i, study in enumerate(studies):
         for name in study.of:
             if name not in known:
-                raise InputError(
-                    shown(name), f"a condition of the matrix: {', '.join(known)}", column=f"study[{i}].of"
+                raise input_error(
+                    "tow.condition_matrix", column=f"study[{i}].of", found=shown(name), known=", ".join(known),
                 )  # fmt: skip
             for what, values in study.values.items():
                 out += [_varied(known[name], what, value) for value in values]

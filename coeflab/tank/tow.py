@@ -33,7 +33,7 @@ from coeflab.study.towed import towed as compared
 from coeflab.tables.force_table import ForceTable
 from coeflab.tables.raw_table import RawTable, Run
 from coeflab.tables.reading import read_tables, table_at
-from coeflab.tank.campaign import SIX, TowedRun, campaign_files, rows_of, towed_run
+from coeflab.tank.campaign import SIX, campaign_files, rows_of
 from coeflab.tank.earlier import earlier_run, matching, take_over
 from coeflab.tank.folder import (
     BODY,
@@ -67,6 +67,7 @@ from coeflab.tank.tank_file import declared_body, default_tank, default_text, re
 from coeflab.tank.tank_keys import TankFile
 from coeflab.tank.test_matrix import EXACT, TowCondition
 from coeflab.tank.towed_body import TowedBody, stl, towed
+from coeflab.tank.towed_run import TowedRun, towed_run
 
 FEWEST = 3  # settings of a sweep: an intercept, a slope and an error
 GOES_ON, BEGINS, ANEW = "goes on from what it wrote last", "begins anew, as it had written nothing", "run anew"

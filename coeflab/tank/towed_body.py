@@ -19,6 +19,7 @@ from coeflab.bodies.mesh.solids import united
 from coeflab.bodies.mesh.topology import edges
 from coeflab.bodies.pieces import HULL, STERN, Piece, mesh_piece
 from coeflab.core.errors import InputError, shown
+from coeflab.core.texts import input_error
 from coeflab.core.types import Array, Faces, brief, locked
 
 Index = NDArray[np.int64]
@@ -198,11 +199,7 @@ def _require_closed(body: Body, faces: Faces) -> None:
     border = edges(faces)
     if not border.sound:
         count = border.open + border.crowded + border.turned
-        raise InputError(
-            f"{body.name}, a surface that is not closed at {count} edges",
-            "two faces at every edge, running opposite ways along it",
-            advice="Do parts touch without overlapping? Let each reach into the next.",
-        )
+        raise input_error("tow.surface_closed_edges", name=body.name, count=count)
 
 
 def _patches(
@@ -225,10 +222,7 @@ def _patches(
     for k, (piece, surface) in enumerate(zip(pieces, surfaces, strict=True)):
         own = which == k
         if not np.any(own):
-            raise InputError(
-                f"the part {shown(piece.name)}, which lies wholly inside the body", "parts that reach out of the others",
-                advice="Delete it, or move it.",
-            )  # fmt: skip
+            raise input_error("tow.part_lies_wholly", name=shown(piece.name))
         label[own], found = _labelled(piece, surface, middles[own])
         for name, chord in found.items():
             chords.setdefault(name, []).append(chord)

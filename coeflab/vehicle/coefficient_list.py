@@ -13,6 +13,7 @@ from coeflab.core.axes import parse_axes
 from coeflab.core.errors import InputError, shown, together
 from coeflab.core.files import readable
 from coeflab.core.provenance import InputFile, sha256_of
+from coeflab.core.texts import input_error
 from coeflab.core.wording import listed
 from coeflab.law.symbols import CONTROLS, derivative, read_factors, respelled
 from coeflab.tables.importers import IMPORTERS
@@ -135,9 +136,7 @@ def _by_rows(raw: RawTable, left: list[str]) -> Iterator[_Cell]:
     texts = [c for c in raw.columns if c.is_text]
     symbols = max(texts, key=lambda c: sum(bool(_symbol(t)) for t in c.texts), default=None)
     if symbols is None or not any(map(_symbol, symbols.texts)):
-        raise InputError(
-            "no column of symbols", "Yv', Nv' ... in a column, or as names of columns over one row", file=raw.path
-        )
+        raise input_error("vehicle.column_symbols", raw.path)
     halves = next((c for c in raw.columns if not c.is_text and _word(c.name) in HALVES), None)
     units = next((c for c in raw.columns if _word(c.name) in UNITS and c is not symbols), None)
     values = _values(raw, [symbols, halves, units])
@@ -166,9 +165,7 @@ def _one_unit(of_all: str, own: str, raw: RawTable, line: int) -> str:
     if _word(of_all) in SI and not pure[1]:
         return own
     if pure[0] != pure[1] or (not pure[0] and own != of_all):
-        raise InputError(
-            f"the unit {shown(own)} beside values in {shown(of_all)}", "one of them", file=raw.path, line=line
-        )
+        raise input_error("vehicle.unit_beside_values", raw.path, line, own=shown(own), of_all=shown(of_all))
     return of_all
 
 
@@ -177,12 +174,7 @@ def _half(half: float, value: float, its: str, unit: str, raw: RawTable, line: i
     if its == "%":
         return half * abs(value) / 100.0
     if its not in ("", "-", unit):
-        raise InputError(
-            f"U95 in {shown(its)} beside {shown(unit or 'no unit')}",
-            "the unit of the value, or %",
-            file=raw.path,
-            line=line,
-        )
+        raise input_error("vehicle.unit_value", raw.path, line, its=shown(its), value=shown(unit or "no unit"))
     return half
 
 
@@ -193,9 +185,10 @@ def _values(raw: RawTable, others: Sequence[RawColumn | None]) -> RawColumn:
     chosen = [c for c in named if _word(c.name) == "value"] or named
     if len(chosen) != 1:
         seen = chosen or found
-        raise InputError(
-            f"{'columns of numbers ' + listed([shown(c.name) for c in seen]) if seen else 'no column of numbers'}",
-            f"one of values, named {VALUES[0]}, and {HALVES[0]} beside it", file=raw.path, line=raw.header_line or None,
+        raise input_error(
+            "vehicle.one_values_named", raw.path, raw.header_line or None,
+            value="columns of numbers " + listed([shown(c.name) for c in seen]) if seen else "no column of numbers",
+            values=VALUES[0], halves=HALVES[0],
         )  # fmt: skip
     return chosen[0]
 
@@ -204,9 +197,7 @@ def _number(cell: _Cell) -> OwnNumber:
     d = derivative(cell.symbol)
     is_prime = cell.symbol.endswith("'") or _word(cell.unit) in PRIMES
     if not is_prime and not cell.unit:
-        raise InputError(
-            f"{d.text} with neither a prime nor a unit", KINDS, advice=f"Add a column unit: 1, or {d.unit}."
-        )
+        raise input_error("vehicle.neither_prime_nor", text=d.text, expected=KINDS, unit=d.unit)
     unit = "" if is_prime else d.unit if _word(cell.unit) in SI else cell.unit
     if cell.symbol.endswith("'") and _word(cell.unit) not in ("", *PRIMES):
         raise InputError(f"the unit {shown(cell.unit)} beside the prime {cell.symbol}", KINDS)
@@ -220,11 +211,7 @@ def _turned(number: OwnNumber, frame: str) -> OwnNumber:
         return number
     d = derivative(number.symbol)
     if set(d.factors) & set(CONTROLS):
-        raise InputError(
-            f"{number.symbol} in FLU",
-            "signs in FRD",
-            advice="The sign of a deflection is no matter of axes: write all in FRD.",
-        )
+        raise input_error("vehicle.signs_frd", symbol=number.symbol)
     factors: Sequence[tuple[str, bool]] = read_factors(d.text[1:]) or ()
     turns = [d.component, *(name.removesuffix("dot") for name, absolute in factors if not absolute)]
     return replace(number, value=number.value * (-1.0) ** sum(t in TURNED for t in turns))

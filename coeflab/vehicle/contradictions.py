@@ -36,6 +36,7 @@ def _slopes(p: ParameterFile) -> tuple[Check, ...]:
 
 
 def _added_mass(p: ParameterFile) -> tuple[Check, ...]:
+    """Acceleration derivatives that differ from the added mass."""
     hull = p.added_mass
     if hull is None:
         return ()
@@ -47,30 +48,26 @@ def _added_mass(p: ParameterFile) -> tuple[Check, ...]:
     ]
     if not differing:
         return ()
-    return (Check(
-        NAME, "added mass stated twice", Severity.NOTE, f"{'; '.join(differing)} (SI)", "one place, or equal",
-        "The coefficient is used, the matrix for all other entries; --accelerations computed uses the matrix alone.",
-    ),)  # fmt: skip
+    found = "; ".join(differing)
+    return (Check.of("plausibility.added_mass_twice", "added mass stated twice", Severity.NOTE, found=found),)
 
 
 def _inertia(p: ParameterFile) -> tuple[Check, ...]:
+    """A transverse moment of inertia that differs from the matrix."""
     mass = p.mass
     if mass is None or mass.inertia is None or mass.inertia_matrix is None:
         return ()
     across = np.diag(mass.inertia_matrix)[1:]
     if np.all(np.abs(across - mass.inertia) <= ALIKE * mass.inertia):
         return ()
-    return (Check(
-        NAME, "mass.inertia and mass.inertia_matrix", Severity.NOTE,
-        f"{mass.inertia:.4g}, and Iy {across[0]:.4g}, Iz {across[1]:.4g} kg m^2", "one of them, or equal", "The matrix is used.",
-    ),)  # fmt: skip
+    iy, iz = across.tolist()
+    places = "mass.inertia and mass.inertia_matrix"
+    return (Check.of("plausibility.inertia_twice", places, Severity.NOTE, statistic=mass.inertia, iy=iy, iz=iz),)
 
 
 def _intervals(p: ParameterFile) -> tuple[Check, ...]:
+    """A status that says that an interval exists, without one."""
     bare = [c.symbol for c in p.coefficients if c.status is Status.OK and c.u95 is None]
     if not bare:
         return ()
-    return (Check(
-        NAME, ", ".join(bare), Severity.WARN, "status ok without u95", "a U95",
-        "ok says that an interval exists. Write u95, or the status stated for a number without one.",
-    ),)  # fmt: skip
+    return (Check.of("plausibility.ok_without_u95", ", ".join(bare), Severity.WARN),)

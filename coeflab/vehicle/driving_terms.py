@@ -1,6 +1,6 @@
 """Fitted terms that would drive the motion which they should damp, and that the data do not tell from zero: zero is written.
 
-What counts as driving is `coeflab.vehicle.plausibility.driving_terms`, the rule of ``coeflab params check``. The other terms of the
+What counts as driving is `coeflab.vehicle.plausible_damping.driving_terms`, the rule of ``coeflab params check``. The other terms of the
 component move along their covariance, as least squares without the term would move them; half-widths stay, and that of the term
 reaches as far as its interval did. A driving term that is told from zero stays as it is, and the check fails it.
 """
@@ -16,7 +16,7 @@ import numpy as np
 from coeflab.core.finding import Finding, Severity
 from coeflab.law.symbols import derivative, primed
 from coeflab.vehicle.parameter_parts import ParameterCovariance
-from coeflab.vehicle.plausibility import driving_terms
+from coeflab.vehicle.plausible_damping import driving_terms
 
 if TYPE_CHECKING:
     from coeflab.core.types import Array

@@ -11,14 +11,18 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from coeflab.core.finding import Severity
-from coeflab.core.table import Check
+from coeflab.core.finding import Finding, Severity
+from coeflab.core.table import Check, as_check
 from coeflab.core.types import Array
 from coeflab.vehicle.second_order import products_once
 
 POUND, SLUG, FOOT, INCH, GRAM, MILLIMETRE = 0.45359237, 14.593902937206, 0.3048, 0.0254, 1e-3, 1e-3
 WATER, AIR = (950.0, 1100.0), (1.1, 1.4)  # kg/m^3; of air near the ground from -20 to 45 deg C
-SLUGS, POUNDS, TONNES = (1.9, 2.1), (60.0, 66.0), (0.95, 1.1)
+SLUGS = (1.9, 2.1)  # slug/ft^3, of water
+DENSITIES = {  # from, to, kg/m^3 in one
+    "slug/ft^3": (*SLUGS, SLUG / FOOT**3), "lb/ft^3": (60.0, 66.0, POUND / FOOT**3), "t/m^3": (0.95, 1.1, 1000.0),
+}  # fmt: skip
+DENSITY_OF_WATER = "model.water"
 FEET_PER_SECOND = (32.0, 32.4)
 GRAVITY = (9.76, 9.84)  # m/s^2, from the equator to the poles (9.780 and 9.832), and 9.8 as people write it
 BUOYANCY = (0.8, 1.25)  # rho V / m of what swims under water, with room for flooded spaces that were left out
@@ -43,25 +47,22 @@ LENGTHS = {
 
 def water(kind: str, density: float, key: str = "density") -> Check:
     """Whether a density can be that of water in kg/m^3, and which unit it looks like if not."""
+    looks = next((unit for unit, (low, high, _) in DENSITIES.items() if low < density < high), "none")
     good = WATER[0] <= density <= WATER[1]
-    comment = "" if good else "No density of water in kg/m^3."
-    for (low, high), unit, factor in (
-        (SLUGS, "slug/ft^3", SLUG / FOOT**3), (POUNDS, "lb/ft^3", POUND / FOOT**3), (TONNES, "t/m^3", 1000.0),
-    ):  # fmt: skip
-        if low < density < high:
-            comment = f"It looks like {unit}, {density * factor:.4g} kg/m^3. Convert to SI, masses and lengths too."
-    return Check(kind, key, Severity.PASS if good else Severity.FAIL, f"{density:g}",
-                 f"{WATER[0]:g} to {WATER[1]:g} kg/m^3", comment)  # fmt: skip
+    return as_check(kind, Finding.of(
+        DENSITY_OF_WATER, key, Severity.PASS if good else Severity.FAIL, statistic=density, looks="water" if good else looks,
+        low=WATER[0], high=WATER[1], si=density * DENSITIES[looks][2] if looks in DENSITIES else density,
+    ))  # fmt: skip
 
 
 def gravity(kind: str, value: float, key: str) -> tuple[Check, ...]:
     """A finding where gravity is in feet."""
     if value == 0.0 or GRAVITY[0] <= abs(value) <= GRAVITY[1]:
         return ()
-    if not FEET_PER_SECOND[0] < abs(value) < FEET_PER_SECOND[1]:
-        return (Check(kind, key, Severity.WARN, f"{value:g}", "9.8 m/s^2", "No gravity on earth in m/s^2."),)
-    return (Check(kind, key, Severity.FAIL, f"{value:g}", "9.8 m/s^2",
-                  "Gravity in ft/s^2. Convert the file to SI: slug and pound to kg, feet to m."),)  # fmt: skip
+    feet = FEET_PER_SECOND[0] < abs(value) < FEET_PER_SECOND[1]
+    severity = Severity.FAIL if feet else Severity.WARN
+    found = Finding.of("model.gravity_unit", key, severity, statistic=value, looks="feet" if feet else "none")
+    return (as_check(kind, found),)
 
 
 def weight(kind: str, force: float, mass: float, key: str) -> tuple[Check, ...]:
@@ -70,9 +71,8 @@ def weight(kind: str, force: float, mass: float, key: str) -> tuple[Check, ...]:
     slugs, pounds = FEET_PER_SECOND[0] < ratio < FEET_PER_SECOND[1], abs(ratio - 1.0) < NEAR
     if not (slugs or pounds):
         return ()
-    means = "pound-force and slug" if slugs else "pounds, or kg, for weight and mass alike"
-    return (Check(kind, key, Severity.FAIL, f"weight over mass = {ratio:.4g}", "9.8 m/s^2",
-                  f"It looks like {means}. Convert the file to SI."),)  # fmt: skip
+    found = Finding.of("model.weight", key, Severity.FAIL, statistic=ratio, looks="slug" if slugs else "pound")
+    return (as_check(kind, found),)
 
 
 def displaced(kind: str, mass: float, volume: float, density: float, key: str) -> tuple[Check, ...]:
@@ -88,16 +88,16 @@ def displaced(kind: str, mass: float, volume: float, density: float, key: str) -
         What the finding is about.
     """
     ratio = density * volume / mass
-    statistic, rule = f"rho V / m = {ratio:.4g}", f"{BUOYANCY[0]:g} to {BUOYANCY[1]:g}"
-    if BUOYANCY[0] <= ratio <= BUOYANCY[1]:
-        return (Check(kind, key, Severity.PASS, statistic, rule, ""),)
-    nearest = min(MIXED, key=lambda factor: abs(ratio / factor - 1.0))
-    likely, near = f"It looks like {MIXED[nearest]}. Convert both to SI.", imperial(ratio)
-    if not near:
+    good = BUOYANCY[0] <= ratio <= BUOYANCY[1]
+    likely = MIXED[min(MIXED, key=lambda factor: abs(ratio / factor - 1.0))]
+    looks = "good" if good else "both" if imperial(ratio) else "none"
+    if looks == "none":
         nearest = min(LENGTHS, key=lambda factor: abs(ratio / factor - 1.0))
-        likely, near = f"It looks like {LENGTHS[nearest]}. Convert to SI.", abs(ratio / nearest - 1.0) < CLOSE
-    comment = likely if near else "Mass, volume and density do not belong together."
-    return (Check(kind, key, Severity.FAIL, statistic, rule, comment),)
+        likely, looks = LENGTHS[nearest], "lengths" if abs(ratio / nearest - 1.0) < CLOSE else "none"
+    return (as_check(kind, Finding.of(
+        "model.displaced", key, Severity.PASS if good else Severity.FAIL, statistic=ratio, looks=looks, likely=likely, low=BUOYANCY[0],
+        high=BUOYANCY[1],
+    )),)  # fmt: skip
 
 
 def imperial(ratio: float) -> bool:
@@ -130,13 +130,14 @@ def body_gyration(
             continue
         own = math.sqrt(inertia[i] / mass)
         by, low, high = own / (mass / density) ** (1.0 / 3.0), *BODY_OVER_VOLUME
-        name = "the cube root of m / rho"
+        over = "volume"
         if low <= by <= high and added[across] > 0.0 and added[3 + i] > 0.0:
             by, low, high = own / math.sqrt(added[3 + i] / added[across]), *BODY_OVER_WATER
-            name = "that of the added mass"
+            over = "water"
         if not low <= by <= high:
-            out.append(Check(kind, axis, Severity.WARN, f"radius of gyration {own:.3g} m, {by:.3g} of {name}", f"{low:g} to {high:g}",
-                             "Is the inertia in another unit, such as lb ft^2, kg mm^2 or g m^2?"))  # fmt: skip
+            out.append(as_check(kind, Finding.of(
+                "model.body_gyration", axis, Severity.WARN, statistic=by, own=own, over=over, low=low, high=high
+            )))  # fmt: skip
     return tuple(out)
 
 
@@ -144,7 +145,7 @@ def no_mass(kind: str, mass: float | None, key: str) -> tuple[Check, ...]:
     """A finding where a stated mass is none."""
     if mass is None or mass > 0.0:
         return ()
-    return (Check(kind, key, Severity.FAIL, f"{mass:g} kg", "above zero", "No body has it; it is not read."),)
+    return (as_check(kind, Finding.of("model.no_mass", key, Severity.FAIL, statistic=mass)),)
 
 
 def gyration(kind: str, mass: float, density: float, sway: float, yaw: float) -> tuple[Check, ...]:
@@ -152,17 +153,11 @@ def gyration(kind: str, mass: float, density: float, sway: float, yaw: float) ->
     if not (mass > 0.0 and density > 0.0 and sway > 0.0 and yaw > 0.0):
         return ()
     ratio = math.sqrt(yaw / sway) / (mass / density) ** (1.0 / 3.0)
-    statistic, rule = (
-        f"sqrt(Nrdot / Yvdot) over the cube root of m / rho: {ratio:.3g}",
-        f"{SLENDER[0]:g} to {SLENDER[1]:g}",
-    )
-    if SLENDER[0] <= ratio <= SLENDER[1]:
-        return (Check(kind, SIZES, Severity.PASS, statistic, rule, ""),)
-    return (Check(
-        kind, SIZES, Severity.FAIL,
-        f"{statistic}; mass {mass:.4g}, Yvdot {-sway:.4g}, Nrdot {-yaw:.4g}, density {density:.4g}",
-        rule, "Masses and moments are not of one system of units. Convert all to kg and m.",
-    ),)  # fmt: skip
+    good = SLENDER[0] <= ratio <= SLENDER[1]
+    return (as_check(kind, Finding.of(
+        "model.gyration", SIZES, Severity.PASS if good else Severity.FAIL, statistic=ratio, units="good" if good else "mixed", mass=mass,
+        sway=-sway, yaw=-yaw, density=density, low=SLENDER[0], high=SLENDER[1],
+    )),)  # fmt: skip
 
 
 # A product u v over the ideal fluid's; a linear term over it is a speed, m/s.
@@ -231,15 +226,8 @@ def munk_twice(kind: str, written: Sequence[Written], added: Array, ideal: Array
 def _check(
     kind: str, component: str, keys: str, total: float, own: float, share: float, with_speed: bool, same: bool
 ) -> Check:
-    product = PRODUCTS[component]
-    mine = f"{total:.4g} {product}" if with_speed else f"{total:.4g} {product[-1]}, equal at {share:.3g} m/s"
-    viscous = f", here {total - own:.4g} {product}" if with_speed else ""
-    comment = (
-        f"Munk moment twice: the simulator adds it from the added mass. Write the total less that{viscous}."
-        if same
-        else "The Coriolis term of the simulator has the reverse sign: the two cancel. Disable it and keep the total here."
-    )
-    return Check(
-        kind, keys, Severity.FAIL if with_speed else Severity.WARN,
-        f"{component} of {mine}, beside {own:.4g} {product} of the simulator's C_A(nu)", "the Munk moment once", comment,
-    )  # fmt: skip
+    return as_check(kind, Finding.of(
+        "model.munk_twice", keys, Severity.FAIL if with_speed else Severity.WARN, statistic=total, component=component,
+        product=PRODUCTS[component], linear=PRODUCTS[component][-1], own=own, share=share, viscous=total - own,
+        sense=f"{'same' if same else 'reverse'}_{'product' if with_speed else 'linear'}",
+    ))  # fmt: skip

@@ -13,7 +13,8 @@ import numpy as np
 from coeflab.core.errors import InputError, shown
 from coeflab.core.texts import input_error
 from coeflab.core.types import dataclass, locking
-from coeflab.law.added_mass import ROUNDING, AddedMass, definiteness
+from coeflab.law.added_mass import AddedMass
+from coeflab.law.definiteness import ROUNDING, definiteness
 from coeflab.law.rigid_body import rigid_body_inertia
 from coeflab.law.symbols import COMPONENTS, MOTIONS, derivative, primed
 from coeflab.law.transforms import skew

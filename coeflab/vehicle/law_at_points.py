@@ -27,8 +27,8 @@ from coeflab.fits.statistics.diagnostics import (
     scatter_of_replicates,
 )
 from coeflab.fits.tied_law import DRIFTS
+from coeflab.law.named_terms import read_term
 from coeflab.law.symbols import COMPONENTS, CONTROLS, FORCES, LINEAR, MOTIONS
-from coeflab.law.terms import read_term
 from coeflab.tables.force_table import AT_REST, ForceTable
 from coeflab.vehicle.parameter_parts import Strict
 

@@ -22,8 +22,9 @@ from coeflab.vehicle.comparison import coefficient_set
 from coeflab.vehicle.force_law import force_at_edges, full_force, points_of, spoken
 from coeflab.vehicle.law_at_points import caps, held_ranges, law_at_points
 from coeflab.vehicle.matching import by_plain_names, plain_name, spelled_as, sums_in_words
-from coeflab.vehicle.parameter_file import SCHEMA_VERSION, ParameterFile
+from coeflab.vehicle.parameter_file import ParameterFile
 from coeflab.vehicle.parameter_parts import ParameterCovariance
+from coeflab.vehicle.schema_versions import SCHEMA_VERSION
 from coeflab.vehicle.sources import Moved, acts_in
 
 if TYPE_CHECKING:
@@ -238,10 +239,7 @@ def _refuse_other_tables(other: ParameterFile, base: ParameterFile) -> None:
     same = abs(other.scaling.length / base.scaling.length - 1.0) < SAME_LENGTH
     if other.models and not (same and np.allclose(at, own, atol=1e-6)):
         named = [f"{p.name}: {p.scaling}, about {tuple(map(float, p.reference_point.point))} m" for p in (other, base)]
-        raise InputError(
-            f"fitted tables by another length or about another point ({named[0]})", f"those of the vehicle ({named[1]})",
-            advice="Tables are not moved: give the vehicle the length and the point of the tables, or merge the campaign.",
-        )  # fmt: skip
+        raise input_error("vehicle.fitted_tables_another", named=named[0], named_2=named[1])
 
 
 def _lengths(base: ParameterFile, other: ParameterFile, own: Scaling) -> str:

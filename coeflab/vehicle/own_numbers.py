@@ -12,7 +12,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from coeflab.bodies.thrusters import ThrusterKeys
+from coeflab.bodies.thruster_keys import ThrusterKeys
 from coeflab.core.axes import Datum, datum_name
 from coeflab.core.declarations import validated
 from coeflab.core.errors import InputError, shown, together
@@ -133,9 +133,9 @@ def own_number(typed: str) -> OwnNumber:
         )
     ratios = [1.0 if is_prime else unit_ratio(u, d.unit) for u in units]
     if ratios[0] is None or (u95 is not None and ratios[1] is None and match["of"] != "%"):
-        raise InputError(
-            f"{d.text} with {f'the unit {shown(unit)}' if unit else 'no unit'}", f"{d.unit}, also written {also_written(d.unit)}",
-            column="--set", advice=f"For a prime write {d.text}'=. Behind a unit may stand {CONSTANT} or {SCALED}, nothing else.",
+        raise input_error(
+            "vehicle.also_written", column="--set", text=d.text, value=f"the unit {shown(unit)}" if unit else "no unit",
+            unit=d.unit, also_written=also_written(d.unit), constant=CONSTANT, scaled=SCALED,
         )  # fmt: skip
     value *= ratios[0]
     u95 = None if u95 is None else u95 * (ratios[0] if match["of"] == "%" or ratios[1] is None else ratios[1])

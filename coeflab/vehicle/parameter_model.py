@@ -179,9 +179,8 @@ class ParameterModel(Strict):
             A variable is missing or unknown.
         """
         if set(columns) != set(self.names):
-            raise InputError(
-                f"values for {', '.join(columns) or 'nothing'}", f"values for {', '.join(self.names)}",
-                column=self.response,
+            raise input_error(
+                "vehicle.columns_of_model", column=self.response, value=", ".join(columns) or "nothing", names=", ".join(self.names),
             )  # fmt: skip
         points = np.column_stack([np.asarray(columns[v], dtype=np.float64) for v in self.names])
         hull = self.hull

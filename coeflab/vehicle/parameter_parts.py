@@ -18,7 +18,8 @@ from coeflab.core.errors import ScalingMismatchError, shown
 from coeflab.core.stored import Finite, Means, Name, Positive, RefusedError, Words, fail_fast
 from coeflab.core.types import brief
 from coeflab.core.units import STANDARD_GRAVITY
-from coeflab.law.added_mass import AddedMass, OtherMethod, definiteness
+from coeflab.law.added_mass import AddedMass, OtherMethod
+from coeflab.law.definiteness import definiteness
 
 if TYPE_CHECKING:
     from coeflab.bodies.thrusters import Squares

@@ -13,10 +13,10 @@ from pydantic import TypeAdapter, ValidationError
 from coeflab.core.errors import MOST_LISTED, InputError, shown, together
 from coeflab.core.stored import RefusedError
 from coeflab.core.text.json import Place, lines_of, parse_json
+from coeflab.core.texts import text_of
 from coeflab.law.coefficient import Coefficient
 from coeflab.law.symbols import derivative
 
-AGREES = "a parameter file that agrees with itself"
 _LISTS = "coefficients"
 
 
@@ -56,13 +56,13 @@ def _in_words(error: Any) -> tuple[str, str, str, tuple[str | int, ...]]:
     """What pydantic found and expected, advice, and where below the place that it names."""
     kind, message = error["type"], error["msg"]
     if kind == "missing":
-        return "nothing", "a value", "", ()
+        return "nothing", text_of("parameter_file.missing"), "", ()
     if kind == "extra_forbidden":
-        return "an unknown key", "only the keys of the schema", "", ()
+        return "an unknown key", text_of("parameter_file.unknown_key"), "", ()
     if kind == "value_error":
         if isinstance(own := error["ctx"]["error"], RefusedError):
             return own.found, own.expected, own.advice, own.where
-        return message.removeprefix("Value error, "), AGREES, "", ()
+        return message.removeprefix("Value error, "), text_of("parameter_file.agrees"), "", ()
     expected = message.removeprefix("Input should be ").removeprefix("String should ").removeprefix("have ")
     return shown(error["input"]), expected, "", ()
 
@@ -116,12 +116,12 @@ def _missing(where: Place, content: Any, schema: bytes) -> tuple[str, str]:
             try:
                 unit = derivative(str(each.get("symbol"))).unit
             except InputError:
-                return "a value", ""
+                return text_of("parameter_file.missing"), ""
             if key == "unit_si":
-                return f'"{unit}", the unit of its symbol', ""
-            return f"the value in {unit} at the density and speed of conditions, or null", ""
+                return text_of("parameter_file.missing_unit", unit=unit), ""
+            return text_of("parameter_file.missing_si", unit=unit), ""
     words = _meaning(where, parse_json(schema.decode()))
-    return (f"a value: {words}" if words else "a value"), ""
+    return (text_of("parameter_file.missing") + f": {words}" * bool(words)), ""
 
 
 def _meaning(where: Place, schema: Any) -> str:

@@ -17,8 +17,8 @@ from itertools import combinations
 import numpy as np
 from numpy.typing import NDArray
 
-from coeflab.core.errors import InputError
 from coeflab.core.finding import Finding, Severity
+from coeflab.core.texts import input_error
 from coeflab.core.types import dataclass
 from coeflab.law.force_law import CONTROLS, EVERYWHERE, WIND, ForceTerm
 from coeflab.law.symbols import COMPONENTS, MOTIONS, primed
@@ -116,7 +116,6 @@ class Sources:
         Coefficients.
     tables : tuple of TableSource
     unused_terms : tuple of ForceTerm
-    unused_tables : tuple of TableSource
     findings : tuple of Finding
         What is not used, and why.
     """
@@ -124,7 +123,6 @@ class Sources:
     terms: tuple[ForceTerm, ...]
     tables: tuple[TableSource, ...]
     unused_terms: tuple[ForceTerm, ...]
-    unused_tables: tuple[TableSource, ...]
     findings: tuple[Finding, ...]
 
     def open_products(self) -> NDArray[np.bool_]:
@@ -191,9 +189,8 @@ def summed(
         found.append(_unused_terms(rivals, s))
     if version != OF_SUM and tuple(map(int, version.split("."))) < tuple(map(int, OF_SUM.split("."))):
         found += _by_the_older_rule(terms, every, selected, standing, version)
-    out = tuple(s for s in every if s not in standing)
     acting = _of_wind(standing, [(t.component, moved_by(t.variables)) for t in selected], found)
-    return Sources(tuple(selected), acting, tuple(dropped), out, tuple(found))
+    return Sources(tuple(selected), acting, tuple(dropped), tuple(found))
 
 
 def still_known(models: Sequence[ParameterModel], terms: Sequence[tuple[str, str, Moved]]) -> Sources:
@@ -218,8 +215,7 @@ def still_known(models: Sequence[ParameterModel], terms: Sequence[tuple[str, str
         if rivals:
             standing.remove(s)
             found.append(_unused_table(s, list(map(primed, rivals))))
-    out = tuple(s for s in every if s not in standing)
-    return Sources((), _of_wind(standing, [(c, moved) for _, c, moved in terms], found), (), out, tuple(found))
+    return Sources((), _of_wind(standing, [(c, moved) for _, c, moved in terms], found), (), tuple(found))
 
 
 def _among_tables(every: Sequence[TableSource], found: list[Finding]) -> list[TableSource]:
@@ -229,10 +225,9 @@ def _among_tables(every: Sequence[TableSource], found: list[Finding]) -> list[Ta
         if a not in out or b not in out or a.component != b.component or not a.meets(b):
             continue
         if a.variables == b.variables or not (a.variables < b.variables or b.variables < a.variables):
-            raise InputError(
-                f"{name_of(a.model)} and {name_of(b.model)}, both with a force of {a.component} {_shared(a, b)}",
-                f"one table of {a.component} for each product of variables", column="models",
-                advice="Fit one table over all of its variables, or give derivatives.",
+            raise input_error(
+                "vehicle.both_force", column="models", name_of=name_of(a.model), name_of_2=name_of(b.model),
+                component=a.component, shared=_shared(a, b),
             )  # fmt: skip
         less, more = (a, b) if a.variables < b.variables else (b, a)
         out.remove(less)

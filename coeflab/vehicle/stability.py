@@ -12,6 +12,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import replace
+from enum import StrEnum
 
 import numpy as np
 
@@ -148,22 +149,34 @@ class Derived:
         return not self.driven and (held is None or held[0] > 0.0 or held[1] < 0.0)
 
 
-ALONE, SIGN_OPEN, NO_CRITERION = ", no U95", "sign open", "no verdict"
+class Verdict(StrEnum):
+    """What a stability index says of straight motion."""
+
+    STABLE = "stable"
+    UNSTABLE = "unstable"
+    SIGN_OPEN = "sign open"  # its interval holds zero
+    NONE = "no verdict"  # side force or turning moment drives
+
+    @property
+    def decided(self) -> bool:
+        """Whether it is one of the two."""
+        return self in (Verdict.STABLE, Verdict.UNSTABLE)
+
+
+def verdict(index: Derived) -> Verdict:
+    """What a stability index says: positive is stable only where side force and turning moment damp."""
+    if not index.decided:
+        return Verdict.NONE if index.driven else Verdict.SIGN_OPEN
+    held = index.interval
+    return Verdict.STABLE if (index.value if held is None else held[0]) > 0.0 else Verdict.UNSTABLE
 
 
 def sense(index: Derived) -> str:
-    """What a stability index says: `SIGN_OPEN` where its interval holds zero; without an interval `ALONE` follows.
-
-    Positive is stable only where side force and turning moment damp; where one of them drives there is no verdict.
-
-    G_v leaves out the restoring moment, so that it speaks of high speed only.
-    """
-    if not index.decided:
-        return NO_CRITERION if index.driven else SIGN_OPEN
-    held = index.interval
-    by_value = "stable" if (index.value if held is None else held[0]) > 0.0 else "unstable"
-    by_value += f" {FAST}" if index.name == "G_v" else ""
-    return by_value + ALONE if index.result is None else by_value
+    """The verdict in words: G_v leaves out the restoring moment and holds at high speed only; an index may lack its U95."""
+    says = verdict(index)
+    if not says.decided:
+        return says
+    return says + f" {FAST}" * (index.name == "G_v") + ", no U95" * (index.result is None)
 
 
 def without_restoring(parameters: ParameterFile) -> str:

@@ -12,7 +12,7 @@ from coeflab.bodies.readers import read_body
 from coeflab.core.errors import InputError
 from coeflab.core.files import shipped
 from coeflab.core.texts import words
-from coeflab.formats.exporting import export
+from coeflab.formats.export import export
 from coeflab.study.study import Study
 
 FOOT, LBP, DIAMETER = 0.3048, 13.9792, 1.6667  # ft

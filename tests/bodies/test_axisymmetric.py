@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from coeflab.bodies.closed_forms import (
-    ellipsoid_added_mass,
+from coeflab.bodies.closed_forms.ellipsoid import ellipsoid_added_mass
+from coeflab.bodies.closed_forms.revolution import (
     graded_nodes,
     lamb_end_correction,
     meridian_integrals,

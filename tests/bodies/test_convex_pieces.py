@@ -7,8 +7,8 @@ import pytest
 from manifold3d import Manifold
 
 from coeflab.bodies.mesh.solids import surface
+from coeflab.bodies.simplify.convex_pieces import LARGER, VOXELS, convex_pieces
 from coeflab.bodies.simplify.part_forms import likeness
-from coeflab.bodies.simplify.segmentation import LARGER, VOXELS, convex_pieces
 from tests.bodies.vehicles import rod
 
 BRACKET = Manifold.cube((1.0, 0.3, 0.1)) + Manifold.cube((0.1, 0.3, 0.8))

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from coeflab.bodies.mesh.decimation import decimated, is_closed
-from coeflab.bodies.mesh.mesh import mesh_integrals
-from coeflab.bodies.mesh.meshing import box_surface, revolved, rings
+from coeflab.bodies.mesh.integrals import mesh_integrals
+from coeflab.bodies.mesh.structured_surface import box_surface, revolved, rings
 from coeflab.core.types import Faces
 
 Surface = tuple[np.ndarray, Faces]

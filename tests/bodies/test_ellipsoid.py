@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.integrate import quad
 
-from coeflab.bodies.closed_forms import ellipsoid_added_mass, mixed_integral, shape_factors
+from coeflab.bodies.closed_forms.ellipsoid import ellipsoid_added_mass, mixed_integral, shape_factors
 
 GENERAL = [(3.0, 2.0, 1.0), (1.0, 0.4, 0.7), (0.5, 1.5, 1.4), (6.0, 1.0, 1.0), (0.3, 1.0, 1.0), (1.0, 1.0, 0.999)]
 

@@ -11,7 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from coeflab.bodies.added_mass import ellipsoid
-from coeflab.bodies.added_mass.ellipsoid import EllipsoidMisfit, ellipsoid_misfit
+from coeflab.bodies.ellipsoid_misfit import EllipsoidMisfit, ellipsoid_misfit
 from coeflab.bodies.mesh.mesh import TriangleMesh
 from coeflab.bodies.readers import read_body
 from coeflab.bodies.shape import Box, Cylinder, Ellipsoid, Part, Parts, Plate, Shape, as_revolution

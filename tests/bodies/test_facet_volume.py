@@ -5,8 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from coeflab.bodies.mesh.mesh import enclosed, facet_deficit
-from coeflab.bodies.mesh.meshing import box_surface, meshed
+from coeflab.bodies.mesh.facet_volume import enclosed, facet_deficit
+from coeflab.bodies.mesh.meshing import meshed
+from coeflab.bodies.mesh.structured_surface import box_surface
 from coeflab.bodies.shape import Cylinder, Ellipsoid, Form, Part, Parts
 from tests.bodies.test_mesh_family import rod
 

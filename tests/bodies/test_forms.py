@@ -30,7 +30,7 @@ from coeflab.bodies.shape import (
     as_revolution,
     shadow,
 )
-from coeflab.bodies.simplify.simplified import part_file
+from coeflab.bodies.simplify.part_file import part_file
 from coeflab.core.axes import Datum
 from coeflab.core.errors import InputError
 from coeflab.core.provenance import Source

@@ -8,8 +8,9 @@ import pytest
 from coeflab.bodies.mesh import family as mesh_family
 from coeflab.bodies.mesh.family import family
 from coeflab.bodies.mesh.mesh import TriangleMesh
-from coeflab.bodies.mesh.meshing import box_surface, meshed
-from coeflab.bodies.panel_solver.influence import panels_of, unfit_share
+from coeflab.bodies.mesh.meshing import meshed
+from coeflab.bodies.mesh.structured_surface import box_surface
+from coeflab.bodies.panel_solver.panels import panels_of, unfit_share
 from coeflab.bodies.shape import Box, Cylinder, Ellipsoid, Form, Part, Parts
 
 

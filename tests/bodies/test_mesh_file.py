@@ -14,8 +14,8 @@ import trimesh
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
+from coeflab.bodies.mesh import declared_faces
 from coeflab.bodies.mesh import file as mesh_file
-from coeflab.bodies.mesh import file as mesh_headers
 from coeflab.bodies.mesh.file import faces_of, load, memory_needed
 from coeflab.bodies.mesh.gates import examined, repaired
 from coeflab.bodies.mesh.mesh import TriangleMesh
@@ -214,7 +214,7 @@ def test_a_mesh_too_large_for_the_machine_is_refused_unread(tmp_path: Path, monk
 def test_text_takes_more_memory(tmp_path: Path) -> None:
     sizes = {n: written(tmp_path, f"ball.{n}", content(k)).stat().st_size for n, k in FORMATS.items()}
     for name, size in sizes.items():
-        held = mesh_headers.text_of(tmp_path / f"ball.{name}", 80)
+        held = declared_faces.text_of(tmp_path / f"ball.{name}", 80)
         assert held == (size if name in ("ascii.stl", "obj", "ascii.ply") else 0)
     assert memory_needed(1, 300 << 20) == 7 * (300 << 20)
 
@@ -225,7 +225,7 @@ def test_the_stated_memory_is_not_exceeded(tmp_path: Path, name: str) -> None:
     """From file to volume; a quarter and more of what is stated, lest nothing was measured."""
     path = written(tmp_path, f"ball.{name}", content(FORMATS[name], trimesh.creation.icosphere(subdivisions=6)))
     count = faces_of(path)
-    stated = memory_needed(count, mesh_headers.text_of(path, count))
+    stated = memory_needed(count, declared_faces.text_of(path, count))
     load(written(tmp_path, f"small.{name}", content(FORMATS[name])))
     tracemalloc.start()
     sound = examined(*load(path), path)
@@ -236,7 +236,7 @@ def test_the_stated_memory_is_not_exceeded(tmp_path: Path, name: str) -> None:
 
 
 def test_text_has_a_bound(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(mesh_headers, "LARGEST_TEXT", 1000)
+    monkeypatch.setattr(declared_faces, "LARGEST_TEXT", 1000)
     for name in ("ascii.stl", "obj", "ascii.ply"):
         refused(written(tmp_path, f"ball.{name}", content(FORMATS[name])), "MB of text", "binary STL or PLY")
 
@@ -278,6 +278,6 @@ def test_large_meshes_are_announced(
     with caplog.at_level(logging.INFO, "coeflab"):
         load(path)
         assert caplog.messages == ["reading 80 faces of ball.stl"]
-        monkeypatch.setattr(mesh_file, "WORTH_SAYING", 80)
+        monkeypatch.setattr(mesh_file, "LARGE_MESH", 80)
         load(path)
     assert caplog.messages[1] == "ball.stl: 80 faces, about 0.1 GB of memory"

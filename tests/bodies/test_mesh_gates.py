@@ -14,7 +14,8 @@ import trimesh
 from coeflab.bodies.mesh import gates as mesh_gates
 from coeflab.bodies.mesh.decimation import is_closed
 from coeflab.bodies.mesh.gates import SoundMesh, examined, repaired, sound
-from coeflab.bodies.mesh.mesh import TriangleMesh, mesh_integrals
+from coeflab.bodies.mesh.integrals import mesh_integrals
+from coeflab.bodies.mesh.mesh import TriangleMesh
 from coeflab.bodies.mesh.solids import box, surface
 from coeflab.bodies.mesh.topology import shells
 from coeflab.core.errors import InputError

@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 
 from coeflab.bodies.body import Body
-from coeflab.bodies.closed_forms import ellipsoid_added_mass
+from coeflab.bodies.closed_forms.ellipsoid import ellipsoid_added_mass
 from coeflab.bodies.mesh.mesh import TriangleMesh
 from coeflab.bodies.mesh.meshing import meshed
-from coeflab.bodies.panel_solver.refinement import STRONGEST, volume_gap
+from coeflab.bodies.panel_solver.volume_gap import STRONGEST, volume_gap
 from coeflab.bodies.readers import read_body
 from coeflab.bodies.shape import Ellipsoid, Part, Parts, Shape
 from coeflab.core.files import shipped

@@ -10,7 +10,8 @@ import pytest
 from coeflab.bodies.added_mass import ADDED_MASS, ellipsoid, primitives, strip
 from coeflab.bodies.added_masses import added_masses, methods
 from coeflab.bodies.body import Body
-from coeflab.bodies.closed_forms import ellipsoid_added_mass, plate_coefficient
+from coeflab.bodies.closed_forms.ellipsoid import ellipsoid_added_mass
+from coeflab.bodies.closed_forms.parts import plate_coefficient
 from coeflab.bodies.readers import read_body
 from coeflab.core.axes import Datum
 from coeflab.core.errors import InputError, PluginError

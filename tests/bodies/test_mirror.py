@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 import trimesh
 
-from coeflab.bodies.closed_forms import ellipsoid_added_mass
+from coeflab.bodies.closed_forms.ellipsoid import ellipsoid_added_mass
 from coeflab.bodies.mirror_planes import SIGNS, asymmetries, vanishing
 from coeflab.law.transforms import moved
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from coeflab.bodies.mesh.solids import oriented_box
+from coeflab.bodies.mesh.oriented_box import oriented_box
 from coeflab.law.transforms import rotation
 
 TURN = rotation(0.3, -0.7, 1.1)

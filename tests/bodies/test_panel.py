@@ -9,10 +9,12 @@ import pytest
 
 from coeflab.bodies.added_mass import panel
 from coeflab.bodies.body import Body
-from coeflab.bodies.closed_forms import ellipsoid_added_mass, plate_added_mass
+from coeflab.bodies.closed_forms.ellipsoid import ellipsoid_added_mass
+from coeflab.bodies.closed_forms.parts import plate_added_mass
 from coeflab.bodies.mesh.mesh import TriangleMesh
-from coeflab.bodies.mesh.meshing import box_surface, meshed
-from coeflab.bodies.panel_solver.influence import slivers
+from coeflab.bodies.mesh.meshing import meshed
+from coeflab.bodies.mesh.structured_surface import box_surface
+from coeflab.bodies.panel_solver.panels import slivers
 from coeflab.bodies.readers import read_body
 from coeflab.bodies.shape import Box, Cylinder, Ellipsoid, Form, Part, Parts, Shape
 from coeflab.core.errors import InputError

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 import coeflab as cf
-from coeflab.bodies.closed_forms import ellipsoid_added_mass
-from coeflab.bodies.mesh.meshing import box_surface, revolved, rings
+from coeflab.bodies.closed_forms.ellipsoid import ellipsoid_added_mass
+from coeflab.bodies.mesh.structured_surface import box_surface, revolved, rings
 from coeflab.bodies.panel_solver import solve as kernel
 from coeflab.bodies.panel_solver.solve import memory_needed, panel_added_mass
 from coeflab.core.types import Array

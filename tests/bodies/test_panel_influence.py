@@ -7,10 +7,11 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from coeflab.bodies.mesh.meshing import box_surface
+from coeflab.bodies.mesh.structured_surface import box_surface
 from coeflab.bodies.panel_solver import influence as panel_influence
 from coeflab.bodies.panel_solver import influence_compiled as panel_compiled
-from coeflab.bodies.panel_solver.influence import Panels, exact_integrals, influence, panels_of, split_in_four
+from coeflab.bodies.panel_solver.influence import exact_integrals, influence
+from coeflab.bodies.panel_solver.panels import Panels, panels_of, split_in_four
 
 CUBE = box_surface(np.array([2.0, 2.0, 2.0]), 48)
 CORNERS = CUBE[0][CUBE[1]]

@@ -9,9 +9,11 @@ import pytest
 
 from coeflab.bodies.added_mass import panel
 from coeflab.bodies.body import Body
-from coeflab.bodies.mesh.meshing import box_surface, meshed
+from coeflab.bodies.mesh.meshing import meshed
+from coeflab.bodies.mesh.structured_surface import box_surface
 from coeflab.bodies.panel_solver import influence as kernel
-from coeflab.bodies.panel_solver.influence import bisected, exact_integrals, graded, gradients, panels_of, sharp_points
+from coeflab.bodies.panel_solver.influence import exact_integrals, gradients
+from coeflab.bodies.panel_solver.panels import bisected, graded, panels_of, sharp_points
 from coeflab.bodies.panel_solver.solve import panel_added_mass
 from coeflab.bodies.panel_solver.wall import Wall
 from coeflab.bodies.readers import read_body

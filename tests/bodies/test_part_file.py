@@ -12,14 +12,15 @@ from hypothesis import strategies as st
 from coeflab.bodies.body import Body
 from coeflab.bodies.readers.primitives import read
 from coeflab.bodies.shape import Box, Cylinder, Ellipsoid, Form, Part, Parts, Plate, shadow
-from coeflab.bodies.simplify.simplified import part_file
-from coeflab.bodies.simplify.simplify import NamedBox, parse_box, read_boxes
+from coeflab.bodies.simplify.boxes import NamedBox, parse_box, read_boxes
+from coeflab.bodies.simplify.part_file import part_file
 from coeflab.core.axes import Datum
 from coeflab.core.errors import InputError
 from coeflab.core.provenance import Source
 from coeflab.law.scaling import Scaling
 from coeflab.law.transforms import rotation
-from coeflab.report.figures.body_scene import normals, part_facets
+from coeflab.report.figures.form_facets import normals
+from coeflab.report.figures.part_pictures import part_facets
 
 FORMS = (
     Cylinder(0.1, 2.0), Plate(0.12, 0.3), Ellipsoid(3.0, 2.0, 1.0), Ellipsoid(3.0, 1.0, 1.0), Ellipsoid(0.5, 0.5, 0.5),

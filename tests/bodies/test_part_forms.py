@@ -7,7 +7,8 @@ import pytest
 from manifold3d import CrossSection, Manifold
 
 from coeflab.bodies.mesh.solids import surface
-from coeflab.bodies.simplify.part_forms import Fit, Piece, boxes, cylinders, ellipsoids, likeness
+from coeflab.bodies.simplify.part_forms import likeness
+from coeflab.bodies.simplify.volume_forms import Fit, Piece, boxes, cylinders, ellipsoids
 from coeflab.law.transforms import angles, rotation
 from tests.bodies.vehicles import lathe, rod
 

@@ -7,7 +7,7 @@ from itertools import product
 import numpy as np
 import pytest
 
-from coeflab.bodies.closed_forms import (
+from coeflab.bodies.closed_forms.parts import (
     PLATE_ASPECTS,
     box_added_mass,
     cylinder_added_mass,

@@ -7,7 +7,7 @@ import pytest
 from manifold3d import CrossSection, Manifold
 
 from coeflab.bodies.mesh.solids import surface
-from coeflab.bodies.simplify.part_forms import plate_fit
+from coeflab.bodies.simplify.plate_fit import plate_fit
 
 
 def plan(*corners: tuple[float, float]) -> Manifold:

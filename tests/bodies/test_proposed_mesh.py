@@ -9,10 +9,10 @@ import pytest
 import trimesh
 from manifold3d import Manifold
 
+from coeflab.bodies.mesh.crossing_faces import crossing_faces
 from coeflab.bodies.mesh.gates import sound
 from coeflab.bodies.mesh.mesh import TriangleMesh
 from coeflab.bodies.mesh.solids import surface
-from coeflab.bodies.mesh.topology import crossing_faces
 from coeflab.bodies.proposed_mesh import proposed
 from coeflab.core.axes import parse_axes
 from coeflab.core.errors import InputError

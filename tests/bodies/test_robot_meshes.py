@@ -10,7 +10,7 @@ import trimesh
 
 from coeflab.bodies.mesh import file as mesh_file
 from coeflab.bodies.mesh.file import load
-from coeflab.bodies.mesh.mesh import MeshIntegrals, mesh_integrals
+from coeflab.bodies.mesh.integrals import MeshIntegrals, mesh_integrals
 from coeflab.bodies.simplify.source import mesh_body
 from coeflab.core.errors import InputError
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from coeflab.bodies.closed_forms import (
+from coeflab.bodies.closed_forms.sections import (
     as_ellipse,
     as_rectangle,
     carried,
@@ -14,7 +14,8 @@ from coeflab.bodies.closed_forms import (
     section_integrals,
     turned,
 )
-from coeflab.bodies.strips import divided, section_matrices
+from coeflab.bodies.section_elements import divided
+from coeflab.bodies.section_flow import section_matrices
 
 PI = np.pi
 

@@ -6,9 +6,12 @@ import numpy as np
 import pytest
 import trimesh
 
-from coeflab.bodies.closed_forms import ellipsoid_added_mass, section_integrals
-from coeflab.bodies.strips import contours, ellipsoid_correction, joints, stations, strips
-from coeflab.law.added_mass import definiteness
+from coeflab.bodies.closed_forms.ellipsoid import ellipsoid_added_mass
+from coeflab.bodies.closed_forms.sections import section_integrals
+from coeflab.bodies.mesh_sections import contours
+from coeflab.bodies.stations import joints, stations
+from coeflab.bodies.strips import ellipsoid_correction, strips
+from coeflab.law.definiteness import definiteness
 
 PI = np.pi
 Mesh = tuple[np.ndarray, np.ndarray]

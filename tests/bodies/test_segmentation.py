@@ -7,7 +7,8 @@ import pytest
 from manifold3d import Manifold
 
 from coeflab.bodies.mesh.solids import box, pieces, simplified, solid, surface
-from coeflab.bodies.simplify.segmentation import round_hull, segments, without_overlap
+from coeflab.bodies.simplify.round_hull import round_hull
+from coeflab.bodies.simplify.segmentation import segments, without_overlap
 from coeflab.law.transforms import rotation
 from tests.bodies.vehicles import HULL, LENGTH, lathe, rod, tailed_hull
 

@@ -16,13 +16,16 @@ from coeflab.bodies.readers import read_body
 from coeflab.bodies.readers.primitives import read
 from coeflab.bodies.shape import Box, Cylinder, Ellipsoid, Plate, shadow
 from coeflab.bodies.simplify import simplify as study
-from coeflab.bodies.simplify.simplify import NamedBox, simplify
+from coeflab.bodies.simplify.boxes import NamedBox
+from coeflab.bodies.simplify.simplify import simplify
 from coeflab.core.axes import Datum
 from coeflab.core.errors import InputError
 from coeflab.core.files import shipped
 from coeflab.core.provenance import InputFile, Source
 from coeflab.law.scaling import Scaling
 from coeflab.law.transforms import rotation
+from coeflab.report.as_json.shapes import simplification
+from coeflab.report.tables.simplification import part_table, total_table
 from tests.bodies.vehicles import HULL, LENGTH, fin, lathe, rod, tailed_hull
 
 
@@ -83,7 +86,7 @@ def test_errors_are_those_of_the_written_numbers() -> None:
         assert p.length_error == pytest.approx(0.0, abs=1e-3)
         assert np.all(np.abs(p.projected_errors[1:]) <= areas[p.part.name])
         assert p.projected_errors[0] == pytest.approx(shadow(p.part.form, np.eye(3)[0]) / p.projected[0] - 1.0)
-    row = found.total_table().rows[0]
+    row = total_table(found).rows[0]
     assert row[3] == f"{100.0 * (found.shape.volume / whole - 1.0):+.1f} %"
 
 
@@ -169,12 +172,12 @@ def test_what_is_like_nothing_stays_a_mesh(tmp_path: Path) -> None:
     found = simplify(body(half_ring()))
     assert found.left_as_mesh
     assert "no form is good, so it stays a mesh" in found.parts[0].remarks[0]
-    assert found.part_table().rows[0][1] == "mesh"
+    assert part_table(found).rows[0][1] == "mesh"
     part = found.parts[0].part
     assert part.fit.kind == "mesh"
     assert found.shape.volume == pytest.approx(found.mesh.volume, rel=1e-12)
     assert found.failures == ()
-    assert (found.as_json()["recommended"], found.as_json()["status"]) == ("mesh", "ok")
+    assert (simplification(found)["recommended"], simplification(found)["status"]) == ("mesh", "ok")
     (tmp_path / "body.toml").write_bytes(found.part_file())
     (tmp_path / "mesh.ply").write_bytes(found.mesh_file())
     for name, content in found.mesh_parts().items():
@@ -250,7 +253,7 @@ def test_a_body_far_off_right_angles_is_not_tidied() -> None:
 
 def test_many_faces_are_decimated_and_said(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(study, "MOST_FACES", 2000)
-    monkeypatch.setattr(study, "KEPT_FACES", 1500)
+    monkeypatch.setattr(study, "SIMPLIFIED_FACES", 1500)
     found = simplify(body(Manifold.sphere(1.0, 64)))
     assert "faces decimated to" in found.statements[0]
     assert found.part_file().decode().count("decimated") == 1

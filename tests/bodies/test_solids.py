@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from coeflab.bodies.mesh.mesh import mesh_integrals
-from coeflab.bodies.mesh.meshing import box_surface
+from coeflab.bodies.mesh.integrals import mesh_integrals
 from coeflab.bodies.mesh.solids import divided, solid, surface
+from coeflab.bodies.mesh.structured_surface import box_surface
 
 
 def longest(vertices: np.ndarray, faces: np.ndarray) -> float:

@@ -10,7 +10,7 @@ import trimesh
 
 from coeflab.bodies.added_mass import strip
 from coeflab.bodies.body import Body
-from coeflab.bodies.closed_forms import ellipsoid_added_mass
+from coeflab.bodies.closed_forms.ellipsoid import ellipsoid_added_mass
 from coeflab.bodies.mesh.meshing import meshed
 from coeflab.bodies.readers import read_body
 from coeflab.core.errors import InputError

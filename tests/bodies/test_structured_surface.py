@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from coeflab.bodies.closed_forms import graded_nodes
-from coeflab.bodies.mesh.mesh import mesh_integrals
-from coeflab.bodies.mesh.meshing import box_surface, lofted, outline, revolved, rings
+from coeflab.bodies.closed_forms.revolution import graded_nodes
+from coeflab.bodies.mesh.integrals import mesh_integrals
+from coeflab.bodies.mesh.structured_surface import box_surface, lofted, outline, revolved, rings
 
 
 def edges_pair_up(faces: np.ndarray) -> bool:

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 import trimesh
 
-from coeflab.bodies.mesh import topology as triangle_pairs
-from coeflab.bodies.mesh.topology import crossing_faces
+from coeflab.bodies.mesh import crossing_faces as crossing
+from coeflab.bodies.mesh.crossing_faces import crossing_faces
 
 
 def ball(shift: tuple[float, float, float] = (0.0, 0.0, 0.0)) -> tuple[np.ndarray, np.ndarray]:
@@ -81,5 +81,5 @@ def test_united_bodies_do_not_cross(seed: int) -> None:
 
 
 def test_too_many_pairs_are_left_alone(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(triangle_pairs, "MOST_PAIRS", 100)
+    monkeypatch.setattr(crossing, "MOST_PAIRS", 100)
     assert crossing_faces(*ball()) is None

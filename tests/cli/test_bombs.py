@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from coeflab.bodies.mesh.file import glb_faces, obj_faces, stl_faces
+from coeflab.bodies.mesh.declared_faces import glb_faces, obj_faces, stl_faces
 from coeflab.core import limits
 from coeflab.core.errors import InputError
 from coeflab.core.text.delimited import read_cells
@@ -19,8 +19,8 @@ from coeflab.core.text.json import parse_json
 from coeflab.core.text.toml import read_toml
 from coeflab.core.text.xml import parse_xml
 from coeflab.core.text.yaml import parse_yaml
-from coeflab.formats.uuv_simulator.law import Xacro
-from coeflab.motion.uncertainty.sobol import draw_counts, drawn_counts
+from coeflab.formats.uuv_simulator.xacro import Xacro
+from coeflab.motion.uncertainty.sobol import drawn_counts
 from coeflab.vehicle.parameter_file import read_parameter_file
 from tests.cli.conftest import COEFLAB, Run
 
@@ -190,10 +190,11 @@ def test_an_option_has_a_bound_that_the_plan_is_named_for(coeflab: Run, tmp_path
 
 
 def test_pieces_draw_what_the_whole_draws(monkeypatch: pytest.MonkeyPatch) -> None:
+    (whole,) = drawn_counts(13, 1050, 3)
     monkeypatch.setattr("coeflab.motion.uncertainty.sobol.TOGETHER", 13 * 100)
     found = list(drawn_counts(13, 1050, 3))
     assert [len(c) for c in found] == [100] * 10 + [50]
-    assert np.array_equal(np.vstack(found), draw_counts(13, 1050, 3))
+    assert np.array_equal(np.vstack(found), whole)
 
 
 @pytest.mark.slow

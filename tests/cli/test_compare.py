@@ -10,8 +10,9 @@ from typing import Any
 import pytest
 
 from coeflab.law.symbols import derivative
-from coeflab.vehicle.comparison import Verdict, compare
+from coeflab.vehicle.comparison import compare
 from coeflab.vehicle.parameter_file import ParameterFile, read_parameter_file
+from coeflab.vehicle.shared_tables import Verdict
 from tests.cli.conftest import Run, flat
 
 VALUES = {"Yv'": (-0.028, 0.002), "Nv'": (-0.014, 0.001), "Yr'": (0.005, 0.001), "Nr'": (-0.0045, 0.0004)}

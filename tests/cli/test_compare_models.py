@@ -10,8 +10,10 @@ from typing import Any
 import numpy as np
 import pytest
 
-from coeflab.vehicle.comparison import MOST, ComparedModel, Verdict, compare, compare_models
+from coeflab.vehicle.compared_models import MOST, ComparedModel, compare_models
+from coeflab.vehicle.comparison import compare
 from coeflab.vehicle.parameter_file import ParameterFile, read_parameter_file
+from coeflab.vehicle.shared_tables import Verdict
 from tests.cli.conftest import Run, flat
 
 PARAMS = Path(__file__).parents[1] / "data" / "parameters_1_1.json"

@@ -81,7 +81,7 @@ def test_large_meshes_are_announced_on_standard_error(
     """Those of 500,000 faces or more, which take 0.4 GB."""
     assert mesh_file.LARGE_MESH == 500_000
     assert mesh_file.memory_needed(522_240) == pytest.approx(0.3656e9, rel=1e-3)
-    monkeypatch.setattr(mesh_file, "WORTH_SAYING", 3000)
+    monkeypatch.setattr(mesh_file, "LARGE_MESH", 3000)
     whole = trimesh.creation.uv_sphere(count=[32, 64])
     whole.vertices = whole.vertices * [2000.0, 200.0, 200.0]
     whole.vertices -= [1000.0, 0.0, 0.0]

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from coeflab.vehicle.parameter_file import SCHEMA_VERSION
+from coeflab.vehicle.schema_versions import SCHEMA_VERSION
 from tests.cli.conftest import Run, flat
 
 DATA = Path(__file__).parents[1] / "formats" / "data"

@@ -11,7 +11,8 @@ import pytest
 from coeflab.core.files import shipped
 from coeflab.core.finding import Severity
 from coeflab.vehicle.parameter_file import read_parameter_file
-from coeflab.vehicle.plausibility import LAW, plausibility
+from coeflab.vehicle.plausibility import plausibility
+from coeflab.vehicle.plausible_added_mass import LAW
 from tests.cli.conftest import Run, Validated
 
 OWN = ("--length", "2 m", "--speed", "1.5 m/s", "--density", "1025", "--about", "cg")
@@ -74,7 +75,7 @@ def test_every_command_that_writes_a_parameter_file_is_here() -> None:
         if '.parameters.json"' in (text := f.read_text(encoding="utf-8")) and "to_json()" in text
     }  # fmt: skip
     assert writers == {
-        "formats/exporting.py",
+        "formats/export.py",
         "identify/tune.py",
         "cli/params.py",
         "identify/commands/identify.py",

@@ -17,8 +17,8 @@ from coeflab.formats.flat_law import flat_law
 from coeflab.formats.fmi import write as fmi
 from coeflab.law.rigid_body import rigid_body_force, rigid_body_inertia
 from coeflab.law.symbols import CONTROLS, MOTIONS
-from coeflab.motion.dynamics import rates_of_one
-from coeflab.motion.marching import alone
+from coeflab.motion.ensemble import alone
+from coeflab.motion.rates_of_one import rates_of_one
 from coeflab.motion.vehicle import vehicle
 from coeflab.vehicle.conform import compared, vector_sets
 from coeflab.vehicle.force_law import force_law

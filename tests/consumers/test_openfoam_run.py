@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from coeflab.bodies.closed_forms import ellipsoid_added_mass
+from coeflab.bodies.closed_forms.ellipsoid import ellipsoid_added_mass
 from coeflab.fits import FITS
 from coeflab.fits.results.fit_result import FitResult
 from coeflab.law.symbols import COMPONENTS

@@ -21,7 +21,7 @@ import pytest
 
 from coeflab.core.errors import InputError
 from coeflab.formats import EXPORTERS, BuiltExporter
-from coeflab.formats.exporting import export
+from coeflab.formats.export import export
 from coeflab.formats.xdyn.actuators import command_names
 from coeflab.law.symbols import MOTIONS
 from coeflab.law.transforms import velocity_transfer

@@ -10,7 +10,7 @@ import pytest
 from coeflab.bodies.readers import read_body
 from coeflab.bodies.simplify.source import subject
 from coeflab.core.files import shipped
-from coeflab.formats.exporting import export
+from coeflab.formats.export import export
 from coeflab.study.estimated_vehicle import asked, from_shape
 from coeflab.study.study import Plan
 from coeflab.vehicle.parameter_file import ParameterFile

@@ -11,7 +11,7 @@ from coeflab.core.errors import InputError
 from coeflab.core.files import names_in, shipped, typed, write_all
 from coeflab.core.text.json import parse_json
 from coeflab.core.text.toml import read_toml
-from coeflab.formats.exporting import parameter_files_rendered
+from coeflab.formats.export import parameter_files_rendered
 from coeflab.vehicle.parameter_file import read_parameter_file
 
 HUUV = shipped("cfd_data") / "huuv" / "huuv.parameters.json"

@@ -10,7 +10,7 @@ import pytest
 from coeflab.core.errors import InputError
 from coeflab.core.text import xml
 from coeflab.core.text.xml import numbers, parse_xml, read_xml, serialised
-from coeflab.formats.uuv_simulator.law import Xacro
+from coeflab.formats.uuv_simulator.xacro import Xacro
 
 BOMB = '<!DOCTYPE a [<!ENTITY b "ha"><!ENTITY c "&b;&b;&b;">]><a>&c;</a>'
 

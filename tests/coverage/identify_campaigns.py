@@ -21,7 +21,8 @@ from scipy.signal import lfilter
 
 from coeflab.core.types import Array
 from coeflab.fits.sparse import scaled_optimizer
-from coeflab.identify.force_balance import Candidate, candidate_terms, correlated, weak
+from coeflab.identify.candidate_terms import candidate_terms
+from coeflab.identify.force_balance import Candidate, correlated, weak
 from coeflab.identify.identification import exchangeable, half_widths, identify, multiples
 from coeflab.identify.series import MotionSeries, read_series
 from coeflab.motion.simulation import simulate

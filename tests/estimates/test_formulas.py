@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from coeflab.bodies.closed_forms import ellipsoid_added_mass, spheroid_munk_slope
+from coeflab.bodies.closed_forms.ellipsoid import ellipsoid_added_mass, spheroid_munk_slope
 from coeflab.bodies.fin_lift import fin_groups, foil_on_body, low_aspect_lift_slope
 from coeflab.bodies.hull_flow import FLAT, STERN, hull_flow
 from coeflab.estimates import SEPARATED, bluff, crossflow, fins, form_drag, friction, hull_lift, ring_wing

@@ -26,9 +26,10 @@ from coeflab.fits.uncertainty.grid_studies import gravest, grid_studies
 from coeflab.law.coefficient import Status
 from coeflab.law.symbols import derivative
 from coeflab.study.validation import validation
-from coeflab.tables.campaign import InputUncertainty, read_campaign
+from coeflab.tables.campaign import read_campaign
 from coeflab.tables.force_table import ForceTable
 from coeflab.tables.importers import PlannedTable
+from coeflab.tables.input_uncertainty import InputUncertainty
 from coeflab.tables.reading import declared, read_tables, with_declarations
 from coeflab.vehicle.parameter_file import ParameterFile
 from coeflab.vehicle.stability import centre_of_pressure, stability

@@ -12,11 +12,11 @@ from coeflab.fits import FITS
 from coeflab.fits.results.fit_result import FitResult
 from coeflab.fits.results.fitted_model import FittedModel
 from coeflab.fits.statistics.least_squares import factorise, solve
-from coeflab.fits.statistics.linear_model import bell_mccaffrey, hc_variance, t_factor
+from coeflab.fits.statistics.robust_errors import bell_mccaffrey, hc_variance, t_factor
 from coeflab.law.terms import design
 from coeflab.law.transforms import body_forces
 from coeflab.tables.force_table import ForceTable
-from coeflab.vehicle.assemble import recorded
+from coeflab.vehicle.recorded import recorded
 from tests.fits.shipped import rows, tables
 
 # Chosen in cfd_data/make_synthetic_vehicles.py: the HUUV paper plots its own and prints none.

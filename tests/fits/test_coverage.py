@@ -7,7 +7,7 @@ import pytest
 
 from coeflab.core.types import Array
 from coeflab.fits.statistics.least_squares import factorise, solve
-from coeflab.fits.statistics.linear_model import bell_mccaffrey, hc_variance, t_factor
+from coeflab.fits.statistics.robust_errors import bell_mccaffrey, hc_variance, t_factor
 from coeflab.fits.statistics.slopes import design
 
 SLOPE = -0.028

@@ -7,7 +7,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from coeflab.fits.uncertainty.grid_convergence import Convergence, fitted_convergence
+from coeflab.fits.uncertainty.grid_convergence import Convergence
+from coeflab.fits.uncertainty.several_grids import fitted_convergence
 
 SIZES = np.array([1.0, 1.25, 1.6, 2.0, 2.6])
 

@@ -14,7 +14,8 @@ from coeflab.core.errors import InputError, ScalingMismatchError
 from coeflab.core.files import shipped
 from coeflab.core.finding import Severity
 from coeflab.fits import FITS
-from coeflab.fits.results.fit_result import FitResult, Pooling
+from coeflab.fits.results.fit_result import FitResult
+from coeflab.fits.results.pooling import Pooling
 from coeflab.law.coefficient import Status
 from coeflab.study.plan import read_plan
 from coeflab.study.run import run

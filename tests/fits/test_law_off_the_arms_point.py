@@ -12,8 +12,8 @@ import coeflab as cf
 from coeflab.fits.joint.moving import LEFT_OUT
 from coeflab.fits.results.fit_result import FitResult, covariance_of
 from coeflab.fits.tied_law import ONE_RATIO
+from coeflab.law.named_terms import read_term
 from coeflab.law.scaling import Scaling
-from coeflab.law.terms import read_term
 from coeflab.study.fitting import fitted, rejoined
 from coeflab.tables.force_table import ForceTable
 from coeflab.vehicle.law_at_points import measured_tables

@@ -10,7 +10,9 @@ import pytest
 import statsmodels.api as sm
 
 from coeflab.fits.results.fitted_model import in_words
-from coeflab.fits.statistics.linear_model import LinearFit, fit_linear, nested_test, runs_probability, sharpened
+from coeflab.fits.statistics.extended_precision import sharpened
+from coeflab.fits.statistics.linear_model import LinearFit, fit_linear, runs_probability
+from coeflab.fits.statistics.nested_test import nested_test
 from coeflab.law.terms import design, power_terms
 
 RNG = np.random.default_rng(20261121)

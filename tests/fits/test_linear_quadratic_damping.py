@@ -13,7 +13,7 @@ from coeflab.fits import FITS
 from coeflab.fits.results.fit_result import FitResult
 from coeflab.fits.results.fitted_model import FittedModel
 from coeflab.fits.statistics.least_squares import factorise, solve
-from coeflab.fits.statistics.linear_model import bell_mccaffrey, hc_variance, t_factor
+from coeflab.fits.statistics.robust_errors import bell_mccaffrey, hc_variance, t_factor
 from coeflab.law.coefficient import Status
 from coeflab.law.terms import design
 from coeflab.tables.campaign import FILE, read_campaign

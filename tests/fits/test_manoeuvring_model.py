@@ -14,12 +14,14 @@ from hypothesis import strategies as st
 from coeflab.core.errors import InputError
 from coeflab.fits import FITS
 from coeflab.fits.results.fit_result import FitResult
-from coeflab.fits.results.fitted_model import FittedModel, every_third_point
-from coeflab.fits.rows.sweeps import explain, secant
+from coeflab.fits.results.fitted_model import FittedModel
+from coeflab.fits.results.out_of_sample import every_third_point
+from coeflab.fits.rows.secant import explain, secant
 from coeflab.fits.rows.too_few import FEW_ROWS
 from coeflab.fits.statistics.stacked import freed
 from coeflab.law.coefficient import Coefficient, Status
-from coeflab.law.terms import SETS, Equation, Term, canonical, read_equation, read_term, read_terms, symmetric
+from coeflab.law.named_terms import SETS, Equation, canonical, read_equation, read_term, read_terms, symmetric
+from coeflab.law.terms import Term
 from coeflab.tables.force_table import ForceTable
 from tests.fits.shipped import tables
 

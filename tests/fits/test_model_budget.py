@@ -13,11 +13,11 @@ from coeflab.fits import FITS
 from coeflab.fits.results.fit_result import FitResult
 from coeflab.fits.uncertainty.budget import Budget
 from coeflab.fits.uncertainty.model_budget import SELECTED, with_model_budgets
-from coeflab.tables.campaign import InputUncertainty
 from coeflab.tables.force_table import ForceTable
 from coeflab.tables.importers import PlannedTable
+from coeflab.tables.input_uncertainty import InputUncertainty
 from coeflab.tables.reading import read_tables
-from coeflab.vehicle.assemble import record
+from coeflab.vehicle.recorded import record
 from tests.report.studies import FULL, LENGTH, small_table
 
 EXPERIMENT = Source("tank", kind="experiment")

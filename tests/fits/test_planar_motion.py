@@ -12,7 +12,7 @@ import pytest
 from coeflab.core.errors import InputError
 from coeflab.fits.planar_motion import against_steady
 from coeflab.fits.statistics.harmonics import CUBIC, QUADRATIC, cycles_of, refined, regress
-from coeflab.fits.statistics.linear_model import t_factor
+from coeflab.fits.statistics.robust_errors import t_factor
 from coeflab.law.coefficient import Status
 from coeflab.tables.planar_motion import Filter
 from tests.fits.oscillating import campaign, declared, fitted, law, record, run, table, truth

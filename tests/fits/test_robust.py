@@ -9,7 +9,7 @@ from scipy import stats
 
 from coeflab.core.types import Array
 from coeflab.fits.statistics.least_squares import factorise, solve
-from coeflab.fits.statistics.linear_model import bell_mccaffrey, hc_variance, t_factor, t_probability
+from coeflab.fits.statistics.robust_errors import bell_mccaffrey, hc_variance, t_factor, t_probability
 
 CASES = [(n, p, weighted) for n, p in ((6, 2), (10, 3), (20, 4), (40, 6)) for weighted in (False, True)]
 

@@ -9,9 +9,9 @@ import pytest
 
 from coeflab.core.files import shipped
 from coeflab.fits.joint.rows import joint_rows
-from coeflab.fits.results.fitted_model import readmitted
+from coeflab.fits.results.set_aside import readmitted
+from coeflab.fits.rows.only_moving import only_moving
 from coeflab.fits.rows.regression import Area, collect
-from coeflab.fits.rows.sweeps import only_moving
 from coeflab.tables.importers import PlannedTable
 from coeflab.tables.reading import read_tables
 from tests.report.studies import FULL, LENGTH, small_table

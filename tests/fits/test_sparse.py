@@ -17,7 +17,8 @@ from coeflab.fits.results.fit_result import FitResult
 from coeflab.fits.results.fitted_model import FittedModel
 from coeflab.fits.statistics.sparse_selection import library, select
 from coeflab.law.coefficient import Status
-from coeflab.law.terms import Term, design, symmetric
+from coeflab.law.named_terms import symmetric
+from coeflab.law.terms import Term, design
 from coeflab.tables.campaign import FILE, read_campaign
 from coeflab.tables.force_table import ForceTable
 from coeflab.tables.importers import IMPORTERS

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from coeflab.fits.statistics.groups import (
+from coeflab.fits.statistics.cross_validation import (
     constrained_space,
     one_standard_error,
     predict_left_out,

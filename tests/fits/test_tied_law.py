@@ -12,7 +12,7 @@ from coeflab.fits import FITS
 from coeflab.fits.results.fit_result import FitResult
 from coeflab.fits.statistics.diagnostics import allowed_miss, scatter_of_replicates
 from coeflab.law.coefficient import Coefficient, CoefficientSet, Status
-from coeflab.law.terms import read_term
+from coeflab.law.named_terms import read_term
 from coeflab.tables.force_table import ForceTable
 from tests.report.studies import CONDITIONS, LENGTH, small_table
 

@@ -16,8 +16,8 @@ from coeflab.fits.results.fit_result import FitResult
 from coeflab.fits.uncertainty.budget import Budget, budgets_of, with_budget
 from coeflab.fits.uncertainty.grid_studies import grid_studies, variant_studies
 from coeflab.fits.uncertainty.model_budget import with_model_budgets
-from coeflab.report.tables.uncertainty import budget as budget_table
-from coeflab.report.tables.uncertainty import studies as study_table
+from coeflab.report.tables.budgets import budget as budget_table
+from coeflab.report.tables.budgets import variant_studies as study_table
 from coeflab.study.validation import validation
 from coeflab.tables.force_table import ForceTable
 from coeflab.tables.importers import PlannedTable

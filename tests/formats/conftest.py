@@ -5,17 +5,17 @@ from __future__ import annotations
 import pytest
 
 from coeflab.core.types import Array
-from coeflab.formats import export
+from coeflab.formats import loss
 from coeflab.vehicle.parameter_file import ParameterFile
 
 
 @pytest.fixture
 def few_states(monkeypatch: pytest.MonkeyPatch) -> None:
     """One of 41 of the grid, of which the law of Gazebo takes a second: it is evaluated one state after the other."""
-    whole = export.covered_grid
+    whole = loss.covered_grid
 
     def few(parameters: ParameterFile) -> tuple[Array, str]:
         nu, words = whole(parameters)
         return nu[::41], words
 
-    monkeypatch.setattr(export, "covered_grid", few)
+    monkeypatch.setattr(loss, "covered_grid", few)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from coeflab.core.axes import Datum
-from coeflab.formats.imported_file import Stated, imported_file
+from coeflab.formats.stated_file import Stated, stated_file
 from coeflab.law.added_mass import AddedMass
 from coeflab.law.rigid_body import MassProperties
 from coeflab.law.scaling import Conditions, Scaling
@@ -54,4 +54,4 @@ def bluerov2_heavy() -> ParameterFile:
     }
     matrix = np.diag([6.36, 7.12, 18.68, 0.189, 0.135, 0.222])
     mass = MassProperties(13.5, 0.0, None, np.zeros(3), np.diag([0.26, 0.23, 0.37]))
-    return imported_file(Stated("bluerov2", "BlueROV2 Heavy", scaling, at, values, matrix=matrix, mass=mass), [], ())
+    return stated_file(Stated("bluerov2", "BlueROV2 Heavy", scaling, at, values, matrix=matrix, mass=mass), [], ())

@@ -13,9 +13,9 @@ import pytest
 from coeflab.core.text.xml import parse_xml
 from coeflab.core.text.yaml import parse_yaml
 from coeflab.formats import EXPORTERS, InertialExporter
-from coeflab.formats.export import LOSSLESS, Export
-from coeflab.formats.exporting import export
+from coeflab.formats.export import Export, export
 from coeflab.formats.gazebo.law import read_gz_link
+from coeflab.formats.loss import LOSSLESS
 from coeflab.formats.loss_tables import forces, in_short, parts
 from coeflab.formats.uuv_simulator.law import read_fossen_link
 from coeflab.formats.xdyn.law import xdyn_body
@@ -204,7 +204,7 @@ def test_the_row_itself_says_that_accelerations_differ(target: str) -> None:
     assert "dr/dt  rad/s^2" in text
     assert "This export is not lossless" in text
     assert "Yvdot' -0.012 (fit) is not used" in text
-    shown = cast(Study, SimpleNamespace(exports=(made,), refused=()))
+    shown = cast("Study", SimpleNamespace(exports=(made,), refused=()))
     ((_, _, verdict, worst, chosen, _),) = export_section.summary(shown).rows
     assert (chosen, worst) == ("computed", f"{percent} ({name})")
     assert verdict.startswith("accepted")

@@ -15,7 +15,7 @@ from coeflab.core.errors import InputError
 from coeflab.core.finding import Severity
 from coeflab.core.texts import words
 from coeflab.formats.c_program import program as c
-from coeflab.formats.exporting import export
+from coeflab.formats.export import export
 from coeflab.formats.flat_law import feet, flat_law
 from coeflab.law.domain import Domain
 from coeflab.law.symbols import MOTIONS

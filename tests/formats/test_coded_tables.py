@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from coeflab.formats.exporting import export
+from coeflab.formats.export import export
 from coeflab.formats.mss import write as mss
 from coeflab.formats.python_vehicle_simulator import write as pvs
 from coeflab.vehicle.conform import vector_sets

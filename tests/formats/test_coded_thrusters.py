@@ -12,7 +12,7 @@ from types import ModuleType
 import numpy as np
 import pytest
 
-from coeflab.formats.exporting import export
+from coeflab.formats.export import export
 from coeflab.formats.model_files import read_model_file
 from coeflab.formats.mss import write as mss
 from coeflab.formats.python_vehicle_simulator import write as pvs

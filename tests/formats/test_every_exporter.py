@@ -11,9 +11,9 @@ import pytest
 
 from coeflab.core.types import Array
 from coeflab.formats import EXPORTERS, SimulatorExporter, SteeredExporter
-from coeflab.formats import export as of_export
-from coeflab.formats.export import DEFLECTED, rare_states
-from coeflab.formats.exporting import export
+from coeflab.formats import loss as losses
+from coeflab.formats.export import export
+from coeflab.formats.loss import DEFLECTED, rare_states
 from coeflab.law.force_law import CONTROLS, ForceLaw
 from coeflab.study.study import Study
 from coeflab.vehicle.force_law import force_law, steered_terms
@@ -29,7 +29,7 @@ each_body = pytest.mark.parametrize("body", BODIES)
 
 
 def plugin(target: str) -> SimulatorExporter:
-    return cast(SimulatorExporter, EXPORTERS.load(target))
+    return cast("SimulatorExporter", EXPORTERS.load(target))
 
 
 def file(suboff: Study, body: str = BODIES[0]) -> ParameterFile:
@@ -130,7 +130,7 @@ def test_the_loss_report_is_there_and_true(suboff: Study, target: str, body: str
     given = file(suboff, body)
     made = export(given, target)
     loss = made.loss
-    nu, grid = of_export.covered_grid(given)
+    nu, grid = losses.covered_grid(given)
     files = {n: c for n, c in made.files.items() if not n.endswith(".loss.txt")}
     theirs, ours = both_forces(target, given, files, nu)
     apart = np.abs(theirs - ours)

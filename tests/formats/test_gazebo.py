@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 
 from coeflab.core.text.xml import parse_xml
-from coeflab.formats.exporting import export
+from coeflab.formats.export import export
 from coeflab.formats.gazebo import write as gazebo
 from coeflab.formats.gazebo.law import GzLink, read_gz_link
 from coeflab.formats.gazebo_plugin import write as gazebo_plugin

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from coeflab.core.text.xml import parse_xml
-from coeflab.formats.exporting import export
+from coeflab.formats.export import export
 from coeflab.formats.gazebo import write as gazebo
 from coeflab.formats.gazebo.assembly import HERE, LINK
 from coeflab.formats.gazebo.drive import driven_force, named

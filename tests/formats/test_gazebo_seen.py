@@ -13,8 +13,7 @@ from coeflab.bodies.readers import read_body
 from coeflab.core.axes import Datum
 from coeflab.core.files import shipped
 from coeflab.core.text.xml import parse_xml
-from coeflab.formats.export import PlannedExport
-from coeflab.formats.exporting import exports_of
+from coeflab.formats.export import PlannedExport, exports_of
 from coeflab.formats.gazebo import write as gazebo
 from coeflab.formats.gazebo.seen import with_mesh
 from coeflab.vehicle.parameter_file import ParameterFile, ParameterPoint

@@ -9,11 +9,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from coeflab.bodies.closed_forms import ellipsoid_added_mass
+from coeflab.bodies.closed_forms.ellipsoid import ellipsoid_added_mass
 from coeflab.core.errors import InputError
-from coeflab.formats.exporting import export
+from coeflab.formats.export import export
 from coeflab.formats.holoocean import write as exporter
-from coeflab.formats.holoocean.write import CROSS_FLOW, WATER, Torpedo, lifting_area
+from coeflab.formats.holoocean.torpedo import CROSS_FLOW, WATER, Torpedo, lifting_area
 from coeflab.law.rigid_body import rigid_body_force
 from coeflab.vehicle.force_law import force_law
 from coeflab.vehicle.parameter_file import ParameterFile

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from coeflab.core.axes import Datum
-from coeflab.formats.exporting import export
+from coeflab.formats.export import export
 from coeflab.formats.lacking_law import unstated, without_law
 from coeflab.law.scaling import Conditions, Scaling
 from coeflab.vehicle.own_numbers import imported_file, mass_of, own_numbers

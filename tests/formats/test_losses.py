@@ -15,9 +15,10 @@ import pytest
 from coeflab.core.errors import InputError
 from coeflab.core.types import Array
 from coeflab.formats import EXPORTERS, SimulatorExporter, SteeredExporter
-from coeflab.formats.export import LOSSLESS, Kind, covered_grid, loss_of, missing_mass, missing_water
-from coeflab.formats.exporting import export
+from coeflab.formats.export import export
+from coeflab.formats.loss import LOSSLESS, covered_grid, loss_of
 from coeflab.formats.loss_tables import in_short
+from coeflab.formats.missing_parts import Kind, missing_mass, missing_water
 from coeflab.motion.vehicle import vehicle
 from coeflab.published.huuv.model import parameter_file as huuv_file
 from coeflab.published.huuv.model import read_huuv

@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from coeflab.core.wording import identifier, one_line
-from coeflab.formats.mss.m_file import assignments
+from coeflab.formats.mss.assignments import assignments
 
 
 def pairs(text: str) -> list[tuple[int, str, str]]:

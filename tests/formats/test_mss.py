@@ -12,10 +12,10 @@ import pytest
 
 from coeflab.core.files import shipped
 from coeflab.core.wording import matlab, one_line
-from coeflab.formats.exporting import export
+from coeflab.formats.export import export
 from coeflab.formats.mss import read as importer
 from coeflab.formats.mss import write as mss
-from coeflab.formats.mss.m_file import assignments
+from coeflab.formats.mss.assignments import assignments
 from coeflab.motion.simulation import simulate
 from coeflab.vehicle.force_law import force_law
 from coeflab.vehicle.parameter_file import ParameterFile, read_parameter_file

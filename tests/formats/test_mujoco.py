@@ -10,13 +10,13 @@ from types import ModuleType
 import numpy as np
 import pytest
 
-from coeflab.bodies.closed_forms import ellipsoid_added_mass
+from coeflab.bodies.closed_forms.ellipsoid import ellipsoid_added_mass
 from coeflab.core.errors import InputError
 from coeflab.core.text.xml import parse_xml
-from coeflab.formats.export import Kind
-from coeflab.formats.exporting import export
-from coeflab.formats.imported_file import Stated, imported_file
+from coeflab.formats.export import export
+from coeflab.formats.missing_parts import Kind
 from coeflab.formats.mujoco import write as exporter
+from coeflab.formats.stated_file import Stated, stated_file
 from coeflab.law.scaling import Conditions, Scaling, powers_of
 from coeflab.published.huuv.model import parameter_file as huuv_file
 from coeflab.published.huuv.model import read_huuv
@@ -56,7 +56,7 @@ def remus(*names: str) -> ParameterFile:
     per_uv = {CANONICAL[n]: v for n, v in REMUS.items()} | REMUS
     values = {n: (per_uv[n] / (0.5 * at.density * scaling.length ** powers_of(n)[1]), "motion") for n in names}
     matrix = np.diag([0.93, 35.5, 35.5, 0.0704, 4.88, 4.88])
-    return imported_file(Stated("remus", "remus", scaling, at, values, matrix=matrix), [], ())
+    return stated_file(Stated("remus", "remus", scaling, at, values, matrix=matrix), [], ())
 
 
 def damping(file: ParameterFile, force: Callable[[np.ndarray], np.ndarray]) -> np.ndarray:

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from coeflab.bodies.closed_forms import ellipsoid_added_mass
+from coeflab.bodies.closed_forms.ellipsoid import ellipsoid_added_mass
 from coeflab.formats.mujoco.law import FluidEllipsoid, ellipsoid_of_masses
 from coeflab.law.rigid_body import ideal_force
 

@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 
 from coeflab.core.wording import one_line
-from coeflab.formats.exporting import export
+from coeflab.formats.export import export
 from coeflab.formats.python_vehicle_simulator import write as pvs
 from coeflab.law.rigid_body import ideal_force, rigid_body_inertia
 from coeflab.law.transforms import skew

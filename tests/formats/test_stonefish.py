@@ -9,13 +9,14 @@ import numpy as np
 import pytest
 import trimesh
 
-from coeflab.bodies.mesh.mesh import mesh_integrals
+from coeflab.bodies.mesh.integrals import mesh_integrals
 from coeflab.core.errors import InputError
 from coeflab.core.text.xml import parse_xml
-from coeflab.formats.export import covered_grid
-from coeflab.formats.exporting import export
+from coeflab.formats.export import export
+from coeflab.formats.loss import covered_grid
 from coeflab.formats.stonefish import write as exporter
-from coeflab.formats.stonefish.write import StonefishLink, added, ellipsoid_mesh, met_at_speed, raw_drag, weighed
+from coeflab.formats.stonefish.drags import StonefishLink, met_at_speed
+from coeflab.formats.stonefish.law import added, ellipsoid_mesh, raw_drag, weighed
 from coeflab.study.study import Study
 from coeflab.vehicle.force_law import force_law
 from coeflab.vehicle.parameter_file import ParameterFile

@@ -18,7 +18,7 @@ from hypothesis import strategies as st
 from coeflab.core.provenance import work
 from coeflab.core.text.toml import toml_text
 from coeflab.formats.csv import write as csv_exporter
-from coeflab.formats.exporting import export
+from coeflab.formats.export import export
 from coeflab.formats.look_up import look_up
 from coeflab.formats.toml import write as toml_exporter
 from coeflab.vehicle.parameter_file import CoveredRange, ParameterFile, read_parameter_file

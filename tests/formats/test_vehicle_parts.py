@@ -10,8 +10,8 @@ import pytest
 
 from coeflab.core.text.yaml import parse_yaml
 from coeflab.formats import EXPORTERS, SimulatorExporter
-from coeflab.formats.export import Kind
-from coeflab.formats.exporting import export
+from coeflab.formats.export import export
+from coeflab.formats.missing_parts import Kind
 from coeflab.formats.mss import read as mss_reader
 from coeflab.formats.toml import write as toml
 from coeflab.formats.uuv_simulator import write as uuv_simulator

@@ -11,10 +11,11 @@ from coeflab.core.errors import InputError
 from coeflab.core.finding import Finding, Severity
 from coeflab.core.texts import remark
 from coeflab.formats import EXPORTERS, SimulatorExporter
-from coeflab.formats.export import LOSSLESS, Kind, PlannedExport, rare_states
+from coeflab.formats.export import PlannedExport, export, exports_of
 from coeflab.formats.exported_law import written_terms
-from coeflab.formats.exporting import export, exports_of
 from coeflab.formats.lacking_law import in_header
+from coeflab.formats.loss import LOSSLESS, rare_states
+from coeflab.formats.missing_parts import Kind
 from coeflab.vehicle.force_law import motion_law
 from coeflab.vehicle.parameter_file import ParameterFile
 from tests.formats.massed import torpedo

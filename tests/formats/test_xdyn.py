@@ -11,8 +11,8 @@ import pytest
 
 from coeflab.core.errors import InputError
 from coeflab.core.text.yaml import parse_yaml
-from coeflab.formats.export import Kind
-from coeflab.formats.exporting import export
+from coeflab.formats.export import export
+from coeflab.formats.missing_parts import Kind
 from coeflab.formats.xdyn import read as importer
 from coeflab.formats.xdyn import write as xdyn
 from coeflab.formats.xdyn.law import xdyn_body

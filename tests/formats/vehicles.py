@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from coeflab.formats.imported_file import Stated, imported_file
+from coeflab.formats.stated_file import Stated, stated_file
 from coeflab.law.rigid_body import MassProperties
 from coeflab.law.scaling import Conditions, Scaling
 from coeflab.law.symbols import LINEAR, MOMENTS, derivative
@@ -36,7 +36,7 @@ def vehicle(name: str) -> ParameterFile:
             values[s] = (v * mass_unit * length_unit**power / scaling.unit(s, at.density, at.speed), law)
     kilograms, centre = facts["mass"] * mass_unit, np.array(facts.get("centre", (0.0, 0.0, 0.0))) * length_unit
     inertia = (np.diag(facts["inertia"]) + facts.get("products", 0.0) * (1.0 - np.eye(3))) * mass_unit * length_unit**2
-    return imported_file(
+    return stated_file(
         Stated(
             name=name,
             body=name,

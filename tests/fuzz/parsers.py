@@ -11,7 +11,7 @@ from typing import Any
 from coeflab.arm.arm_file import read_arm
 from coeflab.bodies.mesh.file import load
 from coeflab.bodies.readers import read_body
-from coeflab.bodies.simplify.simplify import parse_box, read_boxes
+from coeflab.bodies.simplify.boxes import parse_box, read_boxes
 from coeflab.core.arithmetic import ArithmeticProblem, evaluate
 from coeflab.core.axes import angle_sign, parse_axes
 from coeflab.core.errors import InputError
@@ -24,11 +24,11 @@ from coeflab.core.text.xml import parse_xml
 from coeflab.core.text.yaml import parse_yaml
 from coeflab.core.units import parse_header, quantity, typed
 from coeflab.formats.model_files import read_model_file
-from coeflab.glider.glider import read_glider
+from coeflab.glider.glider_file import read_glider
 from coeflab.identify.series import read_series
 from coeflab.identify.tuning_plan import read_tuning_plan
+from coeflab.law.named_terms import read_equation, read_term
 from coeflab.law.symbols import derivative
-from coeflab.law.terms import read_equation, read_term
 from coeflab.motion.vehicle import vehicle
 from coeflab.study.plan import read_plan
 from coeflab.tables.column_map import read_column_map
@@ -42,7 +42,7 @@ from coeflab.tank import folder as tow_folder
 from coeflab.tank.jobs import read_job, read_progress
 from coeflab.tank.tank_file import read_tank
 from coeflab.vehicle.parameter_file import read_parameter_file
-from coeflab.vehicle.reference import read_references
+from coeflab.vehicle.published_values import read_references
 
 ROOT = Path(__file__).parents[2]
 CORPUS = Path(__file__).parent / "corpus"

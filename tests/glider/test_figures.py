@@ -12,7 +12,7 @@ from coeflab.core.files import shipped
 from coeflab.glider import tables as glide_tables
 from coeflab.glider.figures import curve, motion_figure, polar_figure
 from coeflab.glider.glide import GlideRun, steady_glides
-from coeflab.glider.glider import gliders_at
+from coeflab.glider.glider_file import gliders_at
 from coeflab.glider.simulators.glider import simulate
 from coeflab.report.figures.panel import ticks
 

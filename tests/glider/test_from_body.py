@@ -13,7 +13,7 @@ from scipy.optimize import fsolve
 
 import coeflab as cf
 from coeflab.core.files import shipped
-from coeflab.glider.glider import read_glider
+from coeflab.glider.glider_file import read_glider
 from tests.cli.conftest import flat
 
 Run = Callable[..., CompletedProcess[str]]

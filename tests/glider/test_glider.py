@@ -10,7 +10,8 @@ import pytest
 from coeflab.core.errors import InputError
 from coeflab.core.files import shipped
 from coeflab.glider.glide import GlideRun, steady_glides
-from coeflab.glider.glider import Glider, gliders_at
+from coeflab.glider.glider import Glider
+from coeflab.glider.glider_file import gliders_at
 from coeflab.glider.simulators.glider import simulate
 from coeflab.motion.manoeuvre import Manoeuvre, Phase, Until
 from coeflab.motion.trajectory import Ended

@@ -12,17 +12,8 @@ from hypothesis import strategies as st
 
 from coeflab.core.errors import InputError, UnitsError
 from coeflab.core.files import shipped
-from coeflab.glider.glider import (
-    KINDS,
-    BuoyancyEngine,
-    Glider,
-    GliderMass,
-    GliderPhase,
-    SlidingMass,
-    StatedPolar,
-    gliders_at,
-    read_glider,
-)
+from coeflab.glider.glider import BuoyancyEngine, Glider, GliderMass, GliderPhase, SlidingMass, StatedPolar
+from coeflab.glider.glider_file import KINDS, gliders_at, read_glider
 
 THAUV = shipped("cfd_data") / "thauv"
 CASE_01 = (THAUV / "case_01.toml").read_text()

@@ -11,21 +11,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from coeflab.glider.motion import (
-    GliderBody,
-    Leg,
-    March,
-    Polar,
-    Setting,
-    balanced,
-    eigenvalues,
-    glide,
-    legs,
-    march,
-    momentum,
-    rates,
-    velocity,
-)
+from coeflab.glider.motion import GliderBody, Leg, March, Setting, eigenvalues, legs, march, momentum, rates, velocity
+from coeflab.glider.steady_glide import Polar, balanced, glide
 
 STILL = Setting(0.0, 0.0)
 GRAVER = GliderBody(

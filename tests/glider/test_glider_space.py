@@ -11,8 +11,9 @@ import pytest
 from coeflab.core.errors import InputError
 from coeflab.core.files import shipped
 from coeflab.glider.glide import GlideRun, steady_glides, steady_spirals
-from coeflab.glider.glider import Glider, read_glider
-from coeflab.glider.motion import Leg, Polar, Setting, momentum, rates
+from coeflab.glider.glider import Glider
+from coeflab.glider.glider_file import read_glider
+from coeflab.glider.motion import Leg, Setting, momentum, rates
 from coeflab.glider.simulators.glider import simulate
 from coeflab.glider.space import (
     SpaceBody,
@@ -26,6 +27,7 @@ from coeflab.glider.space import (
     unexplained_in_space,
     velocity_in_space,
 )
+from coeflab.glider.steady_glide import Polar
 from coeflab.motion.manoeuvre import Manoeuvre
 
 FILE = Path(str(shipped("cfd_data"))) / "thauv" / "case_02.toml"

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from coeflab.glider.motion import Polar, balanced, glide, pitch_moment, shallowest
+from coeflab.glider.steady_glide import Polar, balanced, glide, pitch_moment, shallowest
 
 DEGREE = float(np.degrees(1.0))
 CASE_01 = Polar((-1.9169, 9.5281 * DEGREE), (11.1159, 0.215 * DEGREE**2), (1.1025, -1.4179 * DEGREE), 60.0)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from coeflab.identify.output_error import dependent_sets, determined
+from coeflab.identify.determined import dependent_sets, determined
 
 RNG = np.random.default_rng(7)
 ALL = np.ones(4, dtype=bool)

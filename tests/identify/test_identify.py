@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 
 from coeflab.core.errors import InputError
-from coeflab.identify.identification import Identified, Outcome, Verdict
+from coeflab.identify.identified import Identified, Outcome, Verdict
 from coeflab.identify.identified_figures import identified_figure
 from coeflab.identify.identify import identify_from
 from coeflab.motion.simulation import simulate

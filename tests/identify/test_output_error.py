@@ -10,7 +10,8 @@ import numpy as np
 import pytest
 
 from coeflab.core.types import Array
-from coeflab.identify.output_error import Problem, by_likelihood, estimate, examine, problem
+from coeflab.identify.output_error import by_likelihood, estimate, examine
+from coeflab.identify.output_problem import Problem, problem
 
 T = np.linspace(0.0, 2.0, 15)
 

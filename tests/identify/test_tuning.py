@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from coeflab.identify.output_error import estimate, problem
+from coeflab.identify.output_error import estimate
+from coeflab.identify.output_problem import problem
 from coeflab.identify.tuning import (
     BOUND,
     OK,

@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.integrate import quad
 
-from coeflab.identify.force_balance import FEWEST, Windows, refined, windows
+from coeflab.identify.windows import FEWEST, Windows, refined, windows
 
 
 def uneven(seed: int, n: int = 200, end: float = 10.0) -> np.ndarray:

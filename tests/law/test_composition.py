@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from coeflab.bodies.closed_forms import ellipsoid_added_mass
-from coeflab.law.added_mass import composed, definiteness
+from coeflab.bodies.closed_forms.ellipsoid import ellipsoid_added_mass
+from coeflab.law.definiteness import composed, definiteness
 from coeflab.law.transforms import moved, turned
 
 RNG = np.random.default_rng(4)

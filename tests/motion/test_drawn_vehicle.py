@@ -9,7 +9,8 @@ import pytest
 
 from coeflab.law.scaling import powers_of
 from coeflab.motion.manoeuvre import UPRIGHT
-from coeflab.motion.uncertainty.draws import drawn, uncertain, unfelt
+from coeflab.motion.uncertainty.drawn_vehicles import drawn, unfelt
+from coeflab.motion.uncertainty.draws import uncertain
 from coeflab.motion.vehicle import vehicle
 from coeflab.vehicle.parameter_file import ParameterFile
 from tests.formats.massed import VALUES, torpedo, with_mass

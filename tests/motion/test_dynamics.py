@@ -14,7 +14,7 @@ from coeflab.law.rigid_body import (
     rigid_body_inertia,
 )
 from coeflab.motion.dynamics import euler_angles, forms_of_pairs, rotations
-from coeflab.motion.marching import alone
+from coeflab.motion.ensemble import alone
 from coeflab.motion.simulators import rigid_body
 from tests.formats.massed import ADDED, CENTRE, INERTIA, MASS
 from tests.motion.fleet import coasting, massive, swimmer

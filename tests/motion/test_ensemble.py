@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from coeflab.core.errors import InputError
-from coeflab.motion.marching import Ensemble, alone, march
+from coeflab.motion.ensemble import Ensemble, alone
+from coeflab.motion.marching import march
 from tests.motion.fleet import coasting, swimmer, zigzag
 
 COAST = coasting(1.0, [1.0, 0, 0, 0, 0, 0])

@@ -13,11 +13,12 @@ import scipy.linalg
 
 from coeflab.formats.c import write as c
 from coeflab.formats.c_program.program import name_of
-from coeflab.formats.exporting import export
+from coeflab.formats.export import export
 from coeflab.formats.python_vehicle_simulator import write as pvs
-from coeflab.motion.dynamics import rates_of_one
+from coeflab.motion.ensemble import alone
 from coeflab.motion.manoeuvre import Manoeuvre, Phase
-from coeflab.motion.marching import alone, march, march_by_tolerance
+from coeflab.motion.marching import march, march_by_tolerance
+from coeflab.motion.rates_of_one import rates_of_one
 from coeflab.motion.trim.linear_model import linear_model
 from coeflab.motion.trim.trim import trim
 from coeflab.motion.vehicle import vehicle

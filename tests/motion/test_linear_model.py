@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from coeflab.core.errors import InputError
-from coeflab.motion.dynamics import modes, participation, slopes
+from coeflab.motion.small_motions import modes, participation, slopes
 from coeflab.motion.trim.linear_model import LinearModel, linear_model
 from coeflab.motion.trim.trim import trim
 from coeflab.motion.vehicle import vehicle

@@ -21,7 +21,8 @@ from coeflab.motion.manoeuvre import Manoeuvre, Phase
 from coeflab.motion.marching import march_by_tolerance
 from coeflab.motion.trajectory import Trajectory
 from coeflab.motion.trim.linear_model import LinearModel, content, linear_model
-from coeflab.motion.trim.trim import MOTION, Trim, trim
+from coeflab.motion.trim.steady_motion import MOTION
+from coeflab.motion.trim.trim import Trim, trim
 from coeflab.motion.vehicle import vehicle
 from coeflab.report.tables.linear_model import schedule_table
 from coeflab.vehicle.parameter_file import read_parameter_file

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from coeflab.motion.dynamics import growth, linearised, modes
+from coeflab.motion.small_motions import growth, linearised, modes
 
 
 def test_a_pendulum_with_damping() -> None:

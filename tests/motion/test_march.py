@@ -7,22 +7,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from coeflab.motion.ensemble import Ensemble, alone
 from coeflab.motion.integrators.adaptive import march_adaptive
 from coeflab.motion.integrators.fixed_step import march as plain
-from coeflab.motion.manoeuvre import (
-    COMPLETE,
-    NOT_FINITE,
-    STEP_TOO_SMALL,
-    TOO_FAST,
-    WATCHED,
-    Manoeuvre,
-    Orders,
-    Phase,
-    Until,
-    orders_of,
-    ramp,
-)
-from coeflab.motion.marching import Ensemble, alone, march, march_by_tolerance
+from coeflab.motion.manoeuvre import Manoeuvre, Phase, Until
+from coeflab.motion.marching import march, march_by_tolerance
+from coeflab.motion.orders import COMPLETE, NOT_FINITE, STEP_TOO_SMALL, TOO_FAST, WATCHED, Orders, orders_of, ramp
 from tests.motion.fleet import RATE, RUDDER, SPEED, coasting, massive, swimmer, zigzag
 
 KERNELS = ("numpy", "compiled")

@@ -7,8 +7,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from coeflab.identify.force_balance import candidate_terms
-from coeflab.identify.identification import allowed, candidates, column, same
+from coeflab.identify.candidate_terms import candidate_terms
+from coeflab.identify.candidates import allowed, candidates, column, same
 from coeflab.law.symbols import derivative
 from coeflab.law.terms import Term, parse_suffix
 from coeflab.motion.vehicle import vehicle

@@ -9,7 +9,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from coeflab.motion.trim.solver import Found, Problem, Scaled, _sorted, solve
+from coeflab.motion.trim.moves import Scaled
+from coeflab.motion.trim.solver import Found, Problem, _sorted, solve
 
 Array = np.ndarray
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from coeflab.motion.manoeuvre import ramp
+from coeflab.motion.orders import ramp
 
 BEGIN, TARGET = np.array([[0.0], [0.1], [0.3]]), np.array([[0.2], [-0.1], [0.3]])
 

@@ -3,7 +3,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from coeflab.motion.manoeuvre import crossing, decay, extreme, settled, value_at
+from coeflab.motion.readings import crossing, decay, extreme, settled, value_at
 
 
 def test_a_crossing_lies_between_rows_and_has_a_direction() -> None:

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from coeflab.core.errors import InputError
-from coeflab.motion.steady_state import root_locus, roots_at
+from coeflab.motion.root_locus import root_locus, roots_at
 from coeflab.motion.vehicle import vehicle
 from coeflab.vehicle.parameter_file import ParameterFile
 from coeflab.vehicle.stability import stability_index

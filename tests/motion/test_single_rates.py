@@ -14,8 +14,9 @@ from coeflab.core.files import shipped
 from coeflab.law.force_law import BASE, WIND, ForceLaw, ForceTerm, Reading
 from coeflab.law.symbols import COMPONENTS
 from coeflab.law.terms import Factor, Term
-from coeflab.motion.dynamics import Dynamics, rates_of_one, term_force_of_one
-from coeflab.motion.marching import alone
+from coeflab.motion.dynamics import Dynamics
+from coeflab.motion.ensemble import alone
+from coeflab.motion.rates_of_one import rates_of_one, term_force_of_one
 from coeflab.motion.vehicle import Vehicle, vehicle
 from coeflab.vehicle.conform import vector_sets
 from coeflab.vehicle.parameter_file import ParameterFile, read_parameter_file

@@ -64,11 +64,11 @@ def test_same_numbers_as_scipy() -> None:
 
 def test_bootstrap_is_that_of_one_replicate_at_a_time() -> None:
     f_a, f_b, f_ab = results(ishigami, *design(256, 3, 4), singles(3))
-    from coeflab.motion.uncertainty.sobol import draw_counts
+    from coeflab.motion.uncertainty.sobol import drawn_counts
 
     replicates = 200
     each = []
-    for counts in draw_counts(256, replicates, 1):
+    for counts in np.vstack(list(drawn_counts(256, replicates, 1))):
         rows = np.repeat(np.arange(256), counts.astype(int))
         one = stats.sobol_indices(
             func={"f_A": f_a[None, rows], "f_B": f_b[None, rows], "f_AB": f_ab[:, None, rows]}, n=256

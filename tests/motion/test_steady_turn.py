@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from coeflab.core.types import Array
-from coeflab.motion.steady_state import (
+from coeflab.motion.steady_turns import (
     COEFFICIENTS,
     INERTIAL,
     features,

@@ -8,11 +8,12 @@ import numpy as np
 import pytest
 
 from coeflab.core.errors import InputError
+from coeflab.motion.trim.moves import Scaled, restored
 from coeflab.motion.trim.operating_point import Outcome
-from coeflab.motion.trim.solver import Scaled, restored
 from coeflab.motion.trim.trim import trim
 from coeflab.motion.vehicle import Vehicle, vehicle
-from coeflab.published.flyingfish.model import CONSTANTS, read_flyingfish, steady_residuals
+from coeflab.published.flyingfish.model import CONSTANTS, read_flyingfish
+from coeflab.published.flyingfish.rotors import steady_residuals
 from tests.motion.trimmed import flyingfish_file, parameter_file
 
 MASS, TURNING = 20.0, (1.0, 4.0, 5.0)

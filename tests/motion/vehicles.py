@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from coeflab.formats.imported_file import Stated, imported_file
+from coeflab.formats.stated_file import Stated, stated_file
 from coeflab.law.rigid_body import MassProperties
 from coeflab.law.scaling import Conditions, Scaling
 from coeflab.vehicle.parameter_file import CoveredRange, ParameterFile
@@ -24,7 +24,7 @@ def made(values: dict[str, float] = STABLE, metacentric: float = 0.0) -> Paramet
     """A parameter file of these primes; ``metacentric``: centre of buoyancy above that of gravity, m."""
     mass = MassProperties(MASS, 0.0, None, np.zeros(3), INERTIA)
     primes = {s: (v, "motion") for s, v in values.items()}
-    file = imported_file(Stated("synthetic", "synthetic body", SCALING, AT, primes, matrix=None, mass=mass), [], ())
+    file = stated_file(Stated("synthetic", "synthetic body", SCALING, AT, primes, matrix=None, mass=mass), [], ())
     hydrostatics = ParameterHydrostatics(
         volume=MASS / DENSITY, centre_of_buoyancy=(0.0, 0.0, -metacentric), gravity=9.81
     )

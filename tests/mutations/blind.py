@@ -11,7 +11,8 @@ from unittest.mock import patch
 import numpy as np
 
 from coeflab.arm import kane
-from coeflab.bodies import closed_forms, fin_lift
+from coeflab.bodies import fin_lift
+from coeflab.bodies.closed_forms import ellipsoid, revolution
 from coeflab.core.files import shipped
 from coeflab.estimates import crossflow
 from coeflab.fits.uncertainty import grid_convergence
@@ -20,7 +21,7 @@ from coeflab.glider.glider import Glider
 from coeflab.glider.motion import GliderBody
 from coeflab.law import scaling, transforms
 from coeflab.law.force_law import ForceLaw
-from coeflab.motion import media, steady_state
+from coeflab.motion import media, steady_turns
 from coeflab.published.flyingfish import model as flyingfish_model
 from coeflab.published.huuv import model as huuv_model
 from tests.mutations.harness import (
@@ -122,10 +123,10 @@ BLIND: tuple[tuple[str, str, Run], ...] = (
     ("suboff", "sign of M in the table of configuration 1", flipped("suboff_roddy_1", "M' [-]")),
     ("tank", "(N1/N2)^(1/2) between grids in space", law(validate_tank, grid_convergence.cell_sizes, "1.0 / dimension", "1.0 / 2.0")),
     ("tank", "Lamb's transverse factor of a spheroid +5 %",
-        law(validate_tank, closed_forms.ellipsoid_added_mass, "out[i] = size**3", "out[i] = (1.05 if i else 1.0) * size**3")),
-    ("tank", "sign of Lamb's turning factor", law(validate_tank, closed_forms.ellipsoid_added_mass, "size**5 * _turning", "-(size**5) * _turning")),
+        law(validate_tank, ellipsoid.ellipsoid_added_mass, "out[i] = size**3", "out[i] = (1.05 if i else 1.0) * size**3")),
+    ("tank", "sign of Lamb's turning factor", law(validate_tank, ellipsoid.ellipsoid_added_mass, "size**5 * _turning", "-(size**5) * _turning")),
     ("tank", "lift slope by cos^2 of the sweep", law(validate_tank, fin_lift.low_aspect_lift_slope, "(c * np.sqrt", "(c**2 * np.sqrt")),
-    ("tank", "x for x^2 in the strips' turning", law(validate_tank, closed_forms.meridian_integrals, "area * (x - centre) ** 2", "area * np.abs(x - centre)")),
+    ("tank", "x for x^2 in the strips' turning", law(validate_tank, revolution.meridian_integrals, "area * (x - centre) ** 2", "area * np.abs(x - centre)")),
     ("flyingfish", "sign of the weight in equation 51",
         law(_fish, flyingfish_model.steady_residuals, "needed[:, 0] += weight", "needed[:, 0] -= weight")),
     ("flyingfish", "thrust by the speed's 1.9th power",
@@ -137,8 +138,8 @@ BLIND: tuple[tuple[str, str, Run], ...] = (
     ("thauv", "alpha for alpha^2 in the drag", law(_glider, glider_motion.rates, "polar.drag[1] * alpha * alpha", "polar.drag[1] * alpha")),
     ("thauv", "sign of the sliding mass's moment", law(_glider, GliderBody.moments, "+ slide * position", "- slide * position")),
     ("thauv", "sign of the buoyancy engine on the way up", lambda _: refusals(lambda: validate_thauv(always_heavy))),
-    ("huuv", "sign of (m + m_y) v r", law(_huuv, steady_state.features, '(0, ("m", "my"), v * r, (none, r, v))', '(0, ("m", "my"), -v * r, (none, -r, -v))')),
-    ("huuv", "Munk moment twice", law(_huuv, steady_state.features, MUNK, MUNK.replace("u * v", "2.0 * u * v").replace("(-v, -u,", "(-2.0 * v, -2.0 * u,").replace("(v, u,", "(2.0 * v, 2.0 * u,"))),
+    ("huuv", "sign of (m + m_y) v r", law(_huuv, steady_turns.features, '(0, ("m", "my"), v * r, (none, r, v))', '(0, ("m", "my"), -v * r, (none, -r, -v))')),
+    ("huuv", "Munk moment twice", law(_huuv, steady_turns.features, MUNK, MUNK.replace("u * v", "2.0 * u * v").replace("(-v, -u,", "(-2.0 * v, -2.0 * u,").replace("(v, u,", "(2.0 * v, 2.0 * u,"))),
     ("huuv", "no dead zone", law(_huuv, huuv_model.thrust_rates, "left > dead_zone, right > dead_zone", "left > 0.0, right > 0.0")),
     ("huuv", "sign of beta in the table of C_n",
         law(_huuv, huuv_model.parameter_file, '{"beta": ((("beta", 1, False),), c["n1"]), "beta^3": ((("beta", 3, False),), c["n3"])}',

@@ -30,10 +30,11 @@ from coeflab.core.errors import CoeflabError
 from coeflab.core.files import shipped
 from coeflab.core.finding import Severity
 from coeflab.core.table import Check
-from coeflab.formats.imported_file import Stated, imported_file
+from coeflab.formats.stated_file import Stated, stated_file
 from coeflab.glider.flight import Flown
 from coeflab.glider.glide import GlideRun
-from coeflab.glider.glider import Glider, gliders_at, read_glider
+from coeflab.glider.glider import Glider
+from coeflab.glider.glider_file import gliders_at, read_glider
 from coeflab.law.rigid_body import MassProperties
 from coeflab.law.scaling import Conditions, Scaling
 from coeflab.motion.simulators import SIMULATORS
@@ -42,7 +43,8 @@ from coeflab.published.flyingfish import acceptance as flyingfish
 from coeflab.published.flyingfish import motions
 from coeflab.published.flyingfish.model import FlyingFish, calibrated, read_flyingfish
 from coeflab.published.huuv import acceptance as huuv
-from coeflab.published.huuv.five_dof import FiveDof, five_dof_file, read_five_dof
+from coeflab.published.huuv.five_dof import FiveDof, read_five_dof
+from coeflab.published.huuv.five_dof_file import five_dof_file
 from coeflab.published.huuv.five_dof_rows import stated_rows
 from coeflab.published.huuv.model import Huuv, parameter_file, read_huuv
 from coeflab.published.parameter_files import flyingfish_file
@@ -223,9 +225,10 @@ def validate_flyingfish(fish: FlyingFish, file: ParameterFile | None = None) -> 
     """All but searches for trims and the bench."""
     constants = calibrated(fish.rotors, fish.motion, fish.angles, fish.speeds)
     made = flyingfish_file(fish) if file is None else file
+    c = motions.craft(fish, 0)
     tables = (
         *flyingfish.implied(fish, constants), *flyingfish.carried(fish, made), flyingfish.air(fish),
-        *motions.without_trims(fish),
+        motions.equations(c, "water"), motions.equations(c, "air"), motions.third(fish), motions.surface(c),
     )  # fmt: skip
     return of_tables(tables, plausibility(made))
 
@@ -485,4 +488,4 @@ def validate_remus(values: dict[str, float]) -> Verdicts:
     coefficients = {s: (v / scaling.unit(s, at.density, at.speed), "motion") for s, v in values.items()}
     mass = MassProperties(30.48, 0.0, 3.45, np.array([0.0, 0.0, 0.0196]), np.diag([0.177, 3.45, 3.45]))
     stated = Stated("remus", "remus", scaling, at, coefficients, mass=mass)
-    return Verdicts({}, of_checks(plausibility(imported_file(stated, [], ("prestero2001",)))))
+    return Verdicts({}, of_checks(plausibility(stated_file(stated, [], ("prestero2001",)))))

@@ -19,7 +19,7 @@ from coeflab.glider.space import SpaceBody
 from coeflab.identify import thruster
 from coeflab.law import rigid_body
 from coeflab.law.rigid_body import momentum_quadratics, weighed
-from coeflab.motion import media, steady_state
+from coeflab.motion import media, steady_turns
 from coeflab.motion.integrators.adaptive import _Phase
 from coeflab.motion.manoeuvres import steady_motion
 from coeflab.published import parameter_files
@@ -27,7 +27,8 @@ from coeflab.published.flyingfish import equations as aerial
 from coeflab.published.flyingfish import model as flyingfish_model
 from coeflab.published.flyingfish import motions
 from coeflab.published.flyingfish.model import FlyingFish
-from coeflab.published.huuv import five_dof
+from coeflab.published.flyingfish.rotors import rotor_wrench
+from coeflab.published.huuv import five_dof, five_dof_file
 from coeflab.published.huuv import model as huuv_model
 from tests.mutations.arm import URV
 from tests.mutations.blind import BLIND, flipped
@@ -261,7 +262,7 @@ FLYINGFISH = (
     ("mass +5 %", constant("mass", TWENTIETH)),
     (
         "sign of the lever in equation 40",
-        fish_law(flyingfish_model.rotor_wrench, "lever * np.sum(across", "-lever * np.sum(across"),
+        fish_law(rotor_wrench, "lever * np.sum(across", "-lever * np.sum(across"),
     ),
     (
         "sign of m u r in equation 52",
@@ -328,7 +329,7 @@ def huuv_law(function: Any, old: str, new: str, times: int = 1) -> Callable[[Sub
 
 def reversed_coriolis(_: Suboff) -> Verdicts:
     """All products of velocities in the equations of the turns: no power is lost."""
-    features, sign = steady_state.features, np.where(np.arange(13) < 5, -1.0, 1.0)
+    features, sign = steady_turns.features, np.where(np.arange(13) < 5, -1.0, 1.0)
 
     def reversed_products(velocity: Any) -> Any:
         force, by = features(velocity)
@@ -373,8 +374,8 @@ FIVE = (
     ("equation 30 as printed: c^2 b^3", five_law(five_dof.simple_masses, "short**2 * wide", "short**2 * wide**3")),
     ("equation 31 as printed: L_m^3", five_law(five_dof.simple_masses, "((r + tall) ** 3 - r**3)", "tall**3")),
     ("slope of C_m(alpha): sign of the Munk moment", five_law(five_dof.pitch_slope, "added[2, 2] - added[0, 0]", "added[0, 0] - added[2, 2]")),
-    ("sign of the lift in the parameter file", five_law(five_dof.five_dof_file, 'c["s1"] / by', '-c["s1"] / by')),
-    ("delta + alpha in the parameter file", five_law(vars(five_dof)["_effective"], "(-1.0) ** k", "1.0")),
+    ("sign of the lift in the parameter file", five_law(five_dof_file.five_dof_file, 'c["s1"] / by', '-c["s1"] / by')),
+    ("delta + alpha in the parameter file", five_law(vars(five_dof_file)["_effective"], "(-1.0) ** k", "1.0")),
 )  # fmt: skip
 
 HUUV = (
@@ -394,7 +395,7 @@ HUUV = (
     (
         "sign of (m + m_x) u r",
         huuv_law(
-            steady_state.features, '(1, ("m", "mx"), -u * r, (-r, none, -u))', '(1, ("m", "mx"), u * r, (r, none, u))'
+            steady_turns.features, '(1, ("m", "mx"), -u * r, (-r, none, -u))', '(1, ("m", "mx"), u * r, (r, none, u))'
         ),
     ),
     ("sign of C_A of the parameter file", reversed_added),

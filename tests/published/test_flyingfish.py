@@ -12,17 +12,11 @@ import pytest
 
 from coeflab.core.errors import InputError
 from coeflab.core.files import shipped
-from coeflab.formats.exporting import export
+from coeflab.formats.export import export
 from coeflab.motion.vehicle import vehicle
 from coeflab.published.flyingfish.equations import aerial_wrench, body_rates, damping, dash, earth_rates, rise
-from coeflab.published.flyingfish.model import (
-    CONSTANTS,
-    MEDIA,
-    Medium,
-    read_flyingfish,
-    rotor_wrench,
-    thrusters,
-)
+from coeflab.published.flyingfish.model import CONSTANTS, MEDIA, Medium, read_flyingfish, thrusters
+from coeflab.published.flyingfish.rotors import rotor_wrench
 from coeflab.published.parameter_files import flyingfish_file as published_file
 from coeflab.study.plan import read_plan
 from coeflab.study.run import run

@@ -9,7 +9,8 @@ import pytest
 
 from coeflab.core.errors import InputError
 from coeflab.core.files import shipped
-from coeflab.motion.steady_state import features, level_forces, steady_motions, steady_turns, wrenches
+from coeflab.motion.steady_state import level_forces, steady_motions, wrenches
+from coeflab.motion.steady_turns import features, steady_turns
 from coeflab.motion.vehicle import Vehicle, vehicle
 from coeflab.published.huuv.model import Huuv, commands, parameter_file, read_huuv, thrust, thrust_rates
 from coeflab.vehicle.parameter_file import read_parameter_file

@@ -14,11 +14,9 @@ from coeflab.motion.simulation import simulate
 from coeflab.motion.vehicle import vehicle
 from coeflab.published.huuv.figures import mast_drag, straight_speeds
 from coeflab.published.huuv.five_dof import (
-    SOURCES,
     FiveDof,
     assumed_body,
     elevator_laws,
-    five_dof_file,
     hull_damping,
     hull_laws,
     inertia,
@@ -29,6 +27,7 @@ from coeflab.published.huuv.five_dof import (
     thrusts,
     turning_laws,
 )
+from coeflab.published.huuv.five_dof_file import SOURCES, five_dof_file
 from coeflab.published.huuv.five_dof_rows import FREE, stated_rows, with_masses
 from coeflab.published.huuv.model import MATLAB, read_huuv
 from coeflab.vehicle.parameter_file import ParameterFile, read_parameter_file

@@ -7,8 +7,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from coeflab.glider.motion import Polar, glide
-from coeflab.published.thauv.acceptance import GlideSpeed, calibrated, incidence_at, speed_of
+from coeflab.glider.steady_glide import Polar, glide
+from coeflab.published.thauv.pitch_balance import GlideSpeed, calibrated, incidence_at, speed_of
 
 PLANTED = np.array([150.0, 5.0, 2.0, 3.5])
 POLARS = [Polar((l0, l1), (11.0, d2), (m0, m1)) for l0, l1, d2, m0, m1 in (

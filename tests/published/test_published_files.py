@@ -8,9 +8,10 @@ import numpy as np
 import pytest
 
 from coeflab.core.files import shipped
-from coeflab.glider.glider import read_glider
+from coeflab.glider.glider_file import read_glider
 from coeflab.motion.vehicle import vehicle
-from coeflab.published.flyingfish.model import CONSTANTS, ROTORS, read_flyingfish, steady_residuals
+from coeflab.published.flyingfish.model import CONSTANTS, ROTORS, read_flyingfish
+from coeflab.published.flyingfish.rotors import steady_residuals
 from coeflab.published.parameter_files import THAUV_MASS, flyingfish_file, thauv_file
 from coeflab.vehicle.parameter_file import ParameterFile
 

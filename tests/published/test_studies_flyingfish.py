@@ -11,7 +11,8 @@ import pytest
 from coeflab.cli import show
 from coeflab.core.provenance import works
 from coeflab.motion.trim.operating_point import Outcome
-from coeflab.published.flyingfish.model import calibrated, read_flyingfish, trim
+from coeflab.published.flyingfish.model import calibrated, read_flyingfish
+from coeflab.published.flyingfish.trims import trim
 from coeflab.report.acceptance import Acceptance, ComparedTable
 from coeflab.report.as_json import studies as as_json
 

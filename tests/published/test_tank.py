@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from coeflab.bodies.closed_forms import spheroid_munk_slope
+from coeflab.bodies.closed_forms.ellipsoid import spheroid_munk_slope
 from coeflab.bodies.fin_lift import low_aspect_lift_slope
 from coeflab.core.files import shipped
 from coeflab.core.text.toml import read_toml

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from coeflab.cli import show
-from coeflab.formats.exporting import export
+from coeflab.formats.export import export
 from coeflab.motion.simulation import simulate
 from coeflab.published.thauv.acceptance import acceptance
 from coeflab.report.acceptance import Acceptance, ComparedTable

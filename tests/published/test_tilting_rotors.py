@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from coeflab.published.flyingfish.model import Rotors, calibrated, rotor_wrench, steady_residuals
+from coeflab.published.flyingfish.model import calibrated
+from coeflab.published.flyingfish.rotors import Rotors, rotor_wrench, steady_residuals
 
 ROTORS = Rotors(
     np.array([0.0998, 0.1658, 0.0064, 0.0032, 0.0008, 0.0029]),

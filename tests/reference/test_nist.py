@@ -15,11 +15,18 @@ import numpy as np
 import pytest
 
 from coeflab.core.types import Array
-from coeflab.fits.statistics.least_squares import BLOCK, classical_variance, factorise, solve
-from coeflab.fits.statistics.linear_model import fit_linear, sharpened
+from coeflab.fits.statistics.extended_precision import sharpened
+from coeflab.fits.statistics.least_squares import BLOCK, Factorised, factorise, solve
+from coeflab.fits.statistics.linear_model import fit_linear
 from coeflab.law.terms import Term, design
 
 DATA = Path(__file__).parent / "data" / "nist"
+
+
+def classical_variance(f: Factorised, residuals: np.ndarray) -> np.ndarray:
+    """Variances of the coefficients under equal, independent errors, shape (p,) or (p, m)."""
+    variance = np.sum(residuals**2, axis=0) / max(f.freedom, 1)
+    return np.asarray(np.multiply.outer(np.sum(f.estimator**2, axis=1), variance))
 
 
 @dataclass(frozen=True)

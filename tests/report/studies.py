@@ -12,7 +12,7 @@ from coeflab.law.coefficient import Coefficient, Status
 from coeflab.law.scaling import Conditions, Scaling
 from coeflab.study.study import Plan, Study
 from coeflab.tables.force_table import Exclusion, ForceTable
-from coeflab.vehicle.reference import Comparison, Relation
+from coeflab.vehicle.published_values import Comparison, Relation
 
 HOSTILE = "<script>alert('x')</script> & \"y\" $a_b$"
 ENDLESS = "\u05e9\u05dc\u05d5\u05dd \u202eright to left\u202c " + "x" * 5000

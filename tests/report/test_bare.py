@@ -7,10 +7,11 @@ import numpy as np
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
+from coeflab.report.figures.artists import bare, label, strokes, text_width
 from coeflab.report.figures.palette import COLOURS
 from coeflab.report.figures.panel import drawing, legend, panel
 from coeflab.report.figures.series import tagged
-from coeflab.report.figures.svg import bare, label, settings, strokes, svg_text, text_width
+from coeflab.report.figures.svg import settings, svg_text
 
 
 def drawn(make):

@@ -13,15 +13,17 @@ import numpy as np
 import pytest
 from matplotlib.figure import Figure as Drawing
 
-from coeflab.bodies.mesh import solids as silhouette
+from coeflab.bodies.mesh import silhouettes
 from coeflab.bodies.mesh.mesh import TriangleMesh
 from coeflab.bodies.mesh.solids import box, surface
 from coeflab.bodies.shape import Box, Cylinder, Ellipsoid, Part, Parts, Plate, StandIn
 from coeflab.law.transforms import rotation
-from coeflab.report.figures.body import FRONT, OBLIQUE, SIDE, TOP, Sheet, _spread, body_figure, rulers, ticks
+from coeflab.report.figures.body import FRONT, OBLIQUE, SIDE, TOP, _spread, body_figure
 from coeflab.report.figures.body_scene import body_scene
+from coeflab.report.figures.body_view import Sheet
+from coeflab.report.figures.hull_scene import hull_scene
 from coeflab.report.figures.palette import COLOURS
-from coeflab.report.sections.body import hull_scene
+from coeflab.report.figures.rulers import rulers, ticks
 
 SVG = "{http://www.w3.org/2000/svg}"
 SHAPE = Parts(
@@ -197,8 +199,8 @@ def test_poor_stand_ins_are_marked_by_more_than_colour() -> None:
 
 
 def test_stripes_cover_their_share_of_an_outline() -> None:
-    square = silhouette.ring(np.array([[0.0, 0.0], [80.0, 0.0], [80.0, 80.0], [0.0, 80.0]]))
-    striped = silhouette.hatched(square, 8.0, 2.0)
+    square = silhouettes.ring(np.array([[0.0, 0.0], [80.0, 0.0], [80.0, 80.0], [0.0, 80.0]]))
+    striped = silhouettes.hatched(square, 8.0, 2.0)
     assert striped.area() == pytest.approx(0.25 * square.area(), rel=1e-6)
     assert (striped ^ square).area() == pytest.approx(striped.area(), rel=1e-9)
 

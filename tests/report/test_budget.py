@@ -11,12 +11,12 @@ from coeflab.fits.uncertainty.budget import MODEL
 from coeflab.fits.uncertainty.grid_studies import VariantStudy
 from coeflab.law.coefficient import COVERS
 from coeflab.report.figures.palette import COLOURS
-from coeflab.report.sections.campaign import tornado_figure
+from coeflab.report.figures.tornado import tornado_figure
 from coeflab.report.sections.coefficients import coefficients_section
+from coeflab.report.tables import budgets as budget_tables
 from coeflab.report.tables import results
-from coeflab.report.tables import uncertainty as budget_tables
 from coeflab.study.validation import validation
-from coeflab.tables.campaign import InputUncertainty
+from coeflab.tables.input_uncertainty import InputUncertainty
 from coeflab.vehicle.stability import centre_of_pressure
 from tests.report.studies import FULL, HOSTILE, budgets, small_study
 

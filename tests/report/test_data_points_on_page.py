@@ -7,14 +7,14 @@ import re
 import numpy as np
 import pytest
 
-from coeflab.identify.identification import Identified, IdentifiedTerm, Outcome
+from coeflab.identify.identified import Identified, IdentifiedTerm, Outcome
 from coeflab.identify.identified_figures import identified_figure
 from coeflab.motion.uncertainty.spread import Importance
 from coeflab.report.document import Figure, Panel, Series
 from coeflab.report.figures.motion import track_figure
 from coeflab.report.figures.series import MOST, curve
+from coeflab.report.figures.tornado import tornado_figure
 from coeflab.report.figures.uncertainty import bars
-from coeflab.report.sections.campaign import tornado_figure
 from tests.report.studies import FULL, budgets, small_study
 from tests.report.test_motion_figure import LENGTH, moved
 

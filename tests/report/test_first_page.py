@@ -19,9 +19,9 @@ from coeflab.report.acceptance import Basis
 from coeflab.report.answer_table import answer_table
 from coeflab.report.content import document
 from coeflab.report.document import Answer, AnswerRow, Document, Section
+from coeflab.report.figures.artists import text_width
 from coeflab.report.figures.first_page import axes_figure, forest_figure, renamed, share_text, slope_figure
 from coeflab.report.figures.panel import SIZE
-from coeflab.report.figures.svg import text_width
 from coeflab.report.first_page import answer, study_summary
 from coeflab.report.first_page_notes import _several
 from coeflab.report.formats import html, pdf
@@ -33,7 +33,7 @@ from coeflab.study.study import PlannedTow, Study
 from coeflab.study.towed import Towed, TowedRow
 from coeflab.tables.assumptions import assumed as key
 from coeflab.tables.assumptions import carried
-from coeflab.vehicle.reference import PublishedValue, Reference, Relation, compare_set
+from coeflab.vehicle.published_values import PublishedValue, Reference, Relation, compare_set
 from tests.report.studies import ENDLESS, FEW, FULL, HALF, HOSTILE, LENGTH, small_study
 from tests.report.test_acceptance_document import DRAWN, found
 

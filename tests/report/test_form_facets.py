@@ -5,9 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from coeflab.bodies.mesh.solids import box, convex_outline, facets_outline, mesh_outline, polygons, surface
+from coeflab.bodies.mesh.silhouettes import convex_outline, facets_outline, mesh_outline, polygons
+from coeflab.bodies.mesh.solids import box, surface
 from coeflab.law.transforms import rotation
-from coeflab.report.figures.body_scene import (
+from coeflab.report.figures.form_facets import (
     AROUND,
     box_facets,
     cylinder_facets,

@@ -6,7 +6,8 @@ import pytest
 
 from coeflab.core.provenance import works
 from coeflab.report.glossary import definitions_html, linked_html, markdown, mentions, terms
-from coeflab.report.notation import html, keeping
+from coeflab.report.markup import html
+from coeflab.report.notation import keeping
 
 ROOT = Path(__file__).resolve().parents[2]
 

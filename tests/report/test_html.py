@@ -16,9 +16,10 @@ from coeflab.bodies.readers import read_body
 from coeflab.core.files import shipped
 from coeflab.report.content import core, document
 from coeflab.report.document import AnswerRow, Document, Section
+from coeflab.report.figures.hull_outline import hull_figure
+from coeflab.report.figures.hull_scene import hull_scene
 from coeflab.report.formats import REPORTERS, Renderer
 from coeflab.report.formats.html import Ends, bar_of, published, row_of
-from coeflab.report.sections.body import hull_figure, hull_scene
 from coeflab.study.symmetry import zeros
 from tests.report.studies import FEW, FULL, HALF, HOSTILE, small_study
 

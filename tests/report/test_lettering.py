@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from coeflab.report.notation import cell_html, drawn, html, label, unit_html, unit_label
+from coeflab.report.markup import cell_html, drawn, html, label, unit_html, unit_label
 
 PRIMED = "Yv'"
 CONTROLS = "\u202e\u202d\u2066\u200b\x00\x1b"

@@ -12,10 +12,12 @@ import pytest
 
 from coeflab.core.files import shipped
 from coeflab.fits import FITS
-from coeflab.report.figures.model import along, distinct, model_figures, slices_of
+from coeflab.report.figures.law_along import along
+from coeflab.report.figures.model import distinct, model_figures
 from coeflab.report.figures.palette import COLOURS
+from coeflab.report.figures.slices import slices_of
 from coeflab.report.figures.surface import is_surface
-from coeflab.report.figures.svg import sheet
+from coeflab.report.figures.svg_file import sheet
 from coeflab.report.figures.variables import (
     axis_name,
     band_in_words,

@@ -11,7 +11,7 @@ import pytest
 from coeflab.core.files import shipped
 from coeflab.core.provenance import InputFile
 from coeflab.core.version import VERSION
-from coeflab.report.document import command, digest_of, reproduction, shipped_name
+from coeflab.report.reproduction import command, digest_of, reproduction, shipped_name
 from coeflab.study.plan import read_plan
 from tests.report.studies import FULL, small_study
 

@@ -7,7 +7,8 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from coeflab.report.tables.schema_page import schema_page
-from coeflab.vehicle.parameter_file import VERSIONS, schema
+from coeflab.vehicle.parameter_file import schema
+from coeflab.vehicle.schema_versions import VERSIONS
 
 SHIPPED = Path(__file__).parents[2] / "docs" / "parameter_file.md"
 

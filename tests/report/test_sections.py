@@ -16,11 +16,12 @@ from coeflab.bodies.shape import Box, Cylinder, Part, Parts
 from coeflab.core.files import shipped
 from coeflab.core.provenance import Source
 from coeflab.fits import FITS
-from coeflab.report.figures.surface import surface_scene
+from coeflab.report.figures.axes import AXES, axes_figures
+from coeflab.report.figures.hull_scene import FACES, Mark, _even, hull_scene
+from coeflab.report.figures.surface_scene import surface_scene
 from coeflab.report.figures.sweep import sweep_figure
 from coeflab.report.formats.html import panels_json, scene_json
-from coeflab.report.sections.body import FACES, Mark, _even, hull_marks, hull_scene
-from coeflab.report.sections.conventions import AXES, axes_figures
+from coeflab.report.sections.body import hull_marks
 from coeflab.report.sections.data_quality import quality_sections
 from coeflab.study.checks.symmetry import check as symmetry_check
 from coeflab.tables.importers import PlannedTable

@@ -14,7 +14,7 @@ from coeflab.report.first_page import study_summary
 from coeflab.report.sections.stability import in_words, stability_sections
 from coeflab.report.tables.added_mass import mass_table
 from coeflab.study.checks.stability import check as stability_check
-from coeflab.vehicle.reference import read_references
+from coeflab.vehicle.published_values import read_references
 from tests.motion.vehicles import STABLE, UNSTABLE, made
 from tests.report.studies import FULL, small_study
 

@@ -14,7 +14,7 @@ from typing import Any
 import pytest
 
 from coeflab.core.wording import Verbatim
-from coeflab.report import notation as lettering
+from coeflab.report import markup
 from coeflab.report.content import document
 from coeflab.report.figures.sweep import sweep_figure
 from coeflab.report.first_page import study_summary
@@ -70,12 +70,10 @@ def test_a_title_that_was_cut_is_still_the_users(longest: int) -> None:
 def test_cells_and_drawings() -> None:
     with keeping(users_texts(Verbatim("Yv"), Verbatim("U"))):
         assert cell_runs("Yv", verbatim()) == ("Yv",)
-        assert (
-            lettering.cell_html("Yv") == lettering.html("Yv") == lettering.drawn("Yv") == lettering.label("Yv") == "Yv"
-        )
-        assert lettering.cell_html("Yv'") != "Yv'"
-        assert lettering.drawn("U95 and U^2") != "U95 and U^2"
-    assert lettering.cell_html("Yv") != "Yv"
+        assert markup.cell_html("Yv") == markup.html("Yv") == markup.drawn("Yv") == markup.label("Yv") == "Yv"
+        assert markup.cell_html("Yv'") != "Yv'"
+        assert markup.drawn("U95 and U^2") != "U95 and U^2"
+    assert markup.cell_html("Yv") != "Yv"
 
 
 def test_names_that_hold_no_symbol_change_nothing() -> None:

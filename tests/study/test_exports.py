@@ -11,8 +11,7 @@ import pytest
 
 from coeflab.core.errors import InputError, PluginError
 from coeflab.core.finding import Severity
-from coeflab.formats.export import PlannedExport
-from coeflab.formats.exporting import export
+from coeflab.formats.export import PlannedExport, export
 from coeflab.report.content import document
 from coeflab.report.rendered import rendered
 from coeflab.study.plan import read_plan

@@ -14,7 +14,7 @@ from coeflab.core.files import shipped
 from coeflab.core.finding import Severity
 from coeflab.core.text.toml import read_toml
 from coeflab.fits.results.fit_result import Sweep
-from coeflab.formats.export import common_losses
+from coeflab.formats.missing_parts import common_losses
 from coeflab.law.scaling import Conditions, Scaling
 from coeflab.report.sections.conventions import conventions_section
 from coeflab.study.checks import data_gate, sizes, symmetry
@@ -22,8 +22,8 @@ from coeflab.study.checks.coverage import replicates
 from coeflab.study.plan import read_plan
 from coeflab.study.run import run
 from coeflab.study.study import Plan, Study
-from coeflab.tables.campaign import InputUncertainty
 from coeflab.tables.importers import PlannedTable
+from coeflab.tables.input_uncertainty import InputUncertainty
 from coeflab.vehicle.inertia import water_inertia
 
 

@@ -10,7 +10,7 @@ import pytest
 
 from coeflab.core.errors import InputError
 from coeflab.core.files import shipped
-from coeflab.formats.exporting import exports_of
+from coeflab.formats.export import exports_of
 from coeflab.motion.manoeuvre import PlannedManoeuvre
 from coeflab.motion.simulation import manoeuvres_of
 from coeflab.report.sections.manoeuvres import manoeuvre_sections

@@ -12,7 +12,7 @@ from coeflab.cli import show
 from coeflab.core.errors import InputError
 from coeflab.core.files import shipped
 from coeflab.report.as_json import studies as as_json
-from coeflab.report.sections.campaign import tow_sections
+from coeflab.report.sections.budgets import tow_sections
 from coeflab.report.tables.comparisons import by_campaign
 from coeflab.report.tables.own_cfd import own_tow, tow_against
 from coeflab.study.plan import read_plan

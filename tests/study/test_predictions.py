@@ -11,8 +11,8 @@ from coeflab.core.files import shipped
 from coeflab.fits.uncertainty.budget import Budget, BudgetPart
 from coeflab.report import acceptance, first_page_notes
 from coeflab.report.acceptance import Basis, headline_of_study, held_of_study
+from coeflab.report.tables.budgets import predictions
 from coeflab.report.tables.own_cfd import own_tow, tow_against
-from coeflab.report.tables.uncertainty import predictions
 from coeflab.study.plan import read_plan
 from coeflab.study.run import run
 from coeflab.study.study import Study

@@ -9,7 +9,7 @@ import pytest
 from coeflab.core.finding import Severity
 from coeflab.study.checks.published_columns import check
 from coeflab.study.study import Study
-from coeflab.vehicle.reference import Relation
+from coeflab.vehicle.published_values import Relation
 
 
 def test_the_shipped_columns_all_stand_beside_something(suboff: Study) -> None:

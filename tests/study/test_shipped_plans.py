@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from coeflab.core.files import shipped
-from coeflab.formats.exporting import export
+from coeflab.formats.export import export
 from coeflab.motion.simulation import simulate
 from coeflab.motion.vehicle import vehicle
 from coeflab.report.first_page import answer

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from coeflab.bodies.images import quarter_turned
+from coeflab.bodies.images import is_fourfold
 from coeflab.bodies.readers import read_body
 from coeflab.core.files import shipped
 from coeflab.core.finding import Severity
@@ -29,11 +29,11 @@ GEOMETRY = Path(__file__).parents[2] / "geometry"
     [("tow_spheroid", True), ("suboff_hull_planes", True), ("suboff_bare_hull", True), ("suboff_aff8", False), ("finned_spheroid", False)],
 )  # fmt: skip
 def test_a_sail_or_rudders_without_planes_are_no_quarter_of_a_turn(body: str, has: bool) -> None:
-    assert quarter_turned(read_body(GEOMETRY / body / "body.toml"), np.zeros(3)) is has
+    assert is_fourfold(read_body(GEOMETRY / body / "body.toml"), np.zeros(3)) is has
 
 
 def test_about_a_point_off_its_axis_no_body_has_it() -> None:
-    assert quarter_turned(read_body(GEOMETRY / "tow_spheroid" / "body.toml"), np.array([0.0, 0.0, 0.05])) is False
+    assert is_fourfold(read_body(GEOMETRY / "tow_spheroid" / "body.toml"), np.array([0.0, 0.0, 0.05])) is False
 
 
 def carried_out(folder: Path, body: str = "", about: str = "") -> Study:

@@ -25,8 +25,8 @@ from coeflab.core.files import shipped, write_all
 from coeflab.core.finding import Severity
 from coeflab.core.text.toml import quoted
 from coeflab.estimates import Contribution, Estimates, Water
-from coeflab.formats.export import Loss
-from coeflab.formats.exporting import export, parameter_files_rendered
+from coeflab.formats.export import export, parameter_files_rendered
+from coeflab.formats.loss import Loss
 from coeflab.law.added_mass import AddedMass
 from coeflab.law.coefficient import Coefficient, CoefficientSet, Status
 from coeflab.law.symbols import derivative
@@ -50,7 +50,8 @@ from coeflab.study.study import Plan, Study
 from coeflab.vehicle.force_law import ahead_from, full_force
 from coeflab.vehicle.from_shape import Stated, spread_of, weighed
 from coeflab.vehicle.merge import merged
-from coeflab.vehicle.parameter_file import SCHEMA_VERSION, ParameterFile, read_parameter_file
+from coeflab.vehicle.parameter_file import ParameterFile, read_parameter_file
+from coeflab.vehicle.schema_versions import SCHEMA_VERSION
 
 pytestmark = pytest.mark.usefixtures("in_a_shell")  # messages as a command prints them
 

@@ -10,7 +10,7 @@ from typing import Any, cast
 
 import numpy as np
 
-from coeflab.bodies.closed_forms import ellipsoid_added_mass
+from coeflab.bodies.closed_forms.ellipsoid import ellipsoid_added_mass
 from coeflab.core.axes import Datum
 from coeflab.law.scaling import Conditions, Scaling
 from coeflab.tank.jobs import Job
@@ -82,7 +82,7 @@ def surface() -> TowedBody:
     ends = 0.5 * np.diag([LENGTH, DIAMETER, DIAMETER])
     points = np.concatenate([ends, -ends])
     faces = np.array([[x, y, z] for x in (0, 3) for y in (1, 4) for z in (2, 5)])
-    return TowedBody(cast(Any, None), points, faces, ("hull", "stern"), faces[:, 0] // 3, mirrors=(True, True, True))
+    return TowedBody(cast("Any", None), points, faces, ("hull", "stern"), faces[:, 0] // 3, mirrors=(True, True, True))
 
 
 def with_rudders() -> TowedBody:

@@ -16,11 +16,12 @@ from coeflab.tables.histories import Convergence
 from coeflab.tables.raw_table import RawColumn, RawTable, Run, Stated
 from coeflab.tables.reading import read_tables, table_at
 from coeflab.tables.run_summary import RunSummary
-from coeflab.tank.campaign import TowedRun, campaign_files, rows_of, short_history, towed_run
+from coeflab.tank.campaign import campaign_files, rows_of, short_history
 from coeflab.tank.jobs import Job, JobState, Progressed
 from coeflab.tank.tank import Tank
 from coeflab.tank.tank_file import read_tank
 from coeflab.tank.test_matrix import Kind, TowCondition
+from coeflab.tank.towed_run import TowedRun, towed_run
 from tests.planted_tank import forces
 from tests.tank.towed_bodies import BODY_FILE, with_mirrors
 

@@ -35,7 +35,7 @@ from coeflab.tank.jobs import (
     write_progress,
 )
 from coeflab.tank.plateau import until
-from coeflab.tank.processes import lives, of_session, started
+from coeflab.tank.processes import is_alive, of_session, started
 from coeflab.tank.states import states_of, time_left
 from tests.tank import slow_solver
 from tests.tank.slow_solver import prepared, rows, solvers_in, wait
@@ -160,7 +160,7 @@ def test_a_number_that_another_process_got_shows_nobody_at_work(tmp_path: Path) 
     assert progress(job).state is JobState.RUNNING
     write_progress(job.folder, Progressed(JobState.RUNNING, "k", process=me, host=host, started=started(me) - 100.0))
     assert progress(job).state is JobState.STOPPED
-    assert not lives(2**22 + 1, float("nan"))
+    assert not is_alive(2**22 + 1, float("nan"))
 
 
 def test_a_job_of_another_machine_runs_while_it_gives_signs_of_life(tmp_path: Path) -> None:

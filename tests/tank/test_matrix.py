@@ -16,7 +16,6 @@ from coeflab.tank.test_matrix import (
     Sweeps,
     TowCondition,
     conditions,
-    default_matrix,
     default_sweeps,
     half_of,
     mirrored,
@@ -24,10 +23,16 @@ from coeflab.tank.test_matrix import (
     symmetries,
     with_studies,
 )
+from coeflab.tank.towed_body import TowedBody
 from tests.tank.towed_bodies import LENGTH, with_mirrors
 
 SPEED = 2.0
 MIRRORS = ["", "y", "z", "yz", "yz4"]
+
+
+def default_matrix(body: TowedBody | None) -> tuple[TowCondition, ...]:
+    """The conditions that the six derivatives need."""
+    return conditions(default_sweeps(body, LENGTH), body, SPEED, LENGTH)
 
 
 def of_kind(matrix: tuple[TowCondition, ...], kind: Kind) -> list[TowCondition]:
@@ -36,7 +41,7 @@ def of_kind(matrix: tuple[TowCondition, ...], kind: Kind) -> list[TowCondition]:
 
 @pytest.mark.parametrize("mirrors", MIRRORS)
 def test_the_default_has_what_six_derivatives_need(mirrors: str) -> None:
-    matrix = default_matrix(with_mirrors(mirrors), SPEED, LENGTH)
+    matrix = default_matrix(with_mirrors(mirrors))
     drift, attack, arm = (of_kind(matrix, k) for k in (Kind.DRIFT, Kind.ATTACK, Kind.ARM))
     v = np.array([c.velocity[1] for c in drift]) / SPEED
     w = np.array([c.velocity[2] for c in attack]) / SPEED
@@ -61,7 +66,7 @@ def test_the_default_has_what_six_derivatives_need(mirrors: str) -> None:
 @pytest.mark.parametrize("reference", [0.0, 1.0, 2.013])
 def test_no_rate_gives_an_end_more_cross_flow_than_the_largest_drift(reference: float) -> None:
     body = with_mirrors("yz", nose=reference, stern=reference - 4.356)
-    matrix = default_matrix(body, SPEED, LENGTH)
+    matrix = default_matrix(body)
     reach = max(abs(reference), abs(reference - 4.356))
     cross = max(abs(c.rates[2]) * reach for c in of_kind(matrix, Kind.ARM))
     drift = max(abs(c.velocity[1]) for c in of_kind(matrix, Kind.DRIFT))
@@ -87,7 +92,7 @@ def test_a_short_body_is_not_spun() -> None:
 def test_every_sweep_has_a_straight_run_on_its_own_mesh(
     mirrors: str, drift: Half, attack: Half | None, straights: dict[str, Half]
 ) -> None:
-    matrix = default_matrix(with_mirrors(mirrors), SPEED, LENGTH)
+    matrix = default_matrix(with_mirrors(mirrors))
     assert {c.half for c in matrix if c.kind in (Kind.DRIFT, Kind.ARM)} == {drift}
     assert {c.half for c in of_kind(matrix, Kind.ATTACK)} == ({attack} if attack is not None else set())
     assert {c.name: c.half for c in of_kind(matrix, Kind.STRAIGHT)} == straights
@@ -174,7 +179,7 @@ def test_angles_that_leave_no_speed_ahead() -> None:
 
 
 def test_a_study_changes_one_thing_at_a_time() -> None:
-    matrix = default_matrix(with_mirrors("yz4"), SPEED, LENGTH)
+    matrix = default_matrix(with_mirrors("yz4"))
     study = Study(("drift+4", "straight"), {"grid": ("coarse", "fine"), "domain": ("1.5",)})
     out = with_studies(matrix, (study,))
     new = out[len(matrix) :]

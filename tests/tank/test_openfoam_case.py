@@ -69,7 +69,7 @@ def test_the_dictionaries_say_the_condition(jobs: Jobs, condition: towed.TowCond
     job = jobs(towed.tank(condition))[condition.name]
     read = FoamCase(job.folder)
     frame = openfoam_case.rotating_frame(read, "body", {"hull", "stern"}, {})
-    found = openfoam_case.motion(read, frame, ([0.0, 0.0, 0.0], "controlDict"), "U")
+    found = openfoam_case.body_motion(read, frame, ([0.0, 0.0, 0.0], "controlDict"), "U")
     said = [float(str(found[n].value)) if n in found else 0.0 for n in "uvwpqr"]
     np.testing.assert_allclose(said, [*condition.velocity, *condition.rates], atol=1e-12)
     assert not read.notes

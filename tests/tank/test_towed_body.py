@@ -12,7 +12,8 @@ from scipy.spatial import ConvexHull, cKDTree
 
 from coeflab.bodies import profiles
 from coeflab.bodies.body import Body
-from coeflab.bodies.mesh.mesh import TriangleMesh, mesh_integrals
+from coeflab.bodies.mesh.integrals import mesh_integrals
+from coeflab.bodies.mesh.mesh import TriangleMesh
 from coeflab.bodies.mesh.topology import edges
 from coeflab.bodies.pieces import Piece
 from coeflab.bodies.readers import finned, groves, read_body

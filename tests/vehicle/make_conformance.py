@@ -21,7 +21,7 @@ from coeflab.law.added_mass import AddedMass
 from coeflab.law.coefficient import Status
 from coeflab.law.rigid_body import MassProperties
 from coeflab.law.symbols import CONTROLS, MOTIONS
-from coeflab.motion.manoeuvre import lagged
+from coeflab.motion.orders import lagged
 from coeflab.motion.vehicle import vehicle
 from coeflab.vehicle.conform import FOLDER
 from coeflab.vehicle.force_law import full_force

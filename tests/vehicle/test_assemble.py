@@ -12,9 +12,10 @@ from coeflab.core.errors import InputError, ScalingMismatchError
 from coeflab.fits.results.fit_result import FitResult
 from coeflab.law.coefficient import Coefficient, CoefficientSet, Status
 from coeflab.law.scaling import Conditions, Scaling
-from coeflab.vehicle.assemble import PlannedParameterFile, assemble
+from coeflab.vehicle.assemble import assemble
+from coeflab.vehicle.gathered import PlannedParameterFile
 from coeflab.vehicle.parameter_file import ParameterFile
-from coeflab.vehicle.reference import Literature, PublishedValue, Reference, Relation
+from coeflab.vehicle.published_values import Literature, PublishedValue, Reference, Relation
 
 SCALING = Scaling(2.0, "L")
 

@@ -7,7 +7,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from coeflab.bodies.thrusters import ThrusterKeys, bollard_squares
+from coeflab.bodies.thruster_keys import ThrusterKeys
+from coeflab.bodies.thrusters import bollard_squares
 from coeflab.core.declarations import validated
 from coeflab.core.errors import InputError
 from coeflab.law.scaling import Conditions

@@ -16,7 +16,8 @@ from coeflab.study.plan import plan_at
 from coeflab.study.run import run
 from coeflab.study.study import Study
 from coeflab.vehicle.driving_terms import moved_to_zero
-from coeflab.vehicle.plausibility import driving_terms, plausibility
+from coeflab.vehicle.plausibility import plausibility
+from coeflab.vehicle.plausible_damping import driving_terms
 
 
 def sweep(folder: Path, linear: float, noise: float) -> Study:

@@ -13,13 +13,14 @@ from coeflab.bodies.triangulation import Triangulation
 from coeflab.core.axes import Datum
 from coeflab.core.provenance import Source
 from coeflab.fits.results.fit_result import FitResult
-from coeflab.formats.export import covered_grid
+from coeflab.formats.loss import covered_grid
 from coeflab.law.added_mass import AddedMass
 from coeflab.law.coefficient import Coefficient, CoefficientSet, Status
 from coeflab.law.rigid_body import ideal_force
 from coeflab.law.scaling import Conditions, Scaling
-from coeflab.vehicle.assemble import PlannedParameterFile, assemble
+from coeflab.vehicle.assemble import assemble
 from coeflab.vehicle.force_law import force_law
+from coeflab.vehicle.gathered import PlannedParameterFile
 from coeflab.vehicle.parameter_file import ParameterFile
 from tests.report.studies import FULL, small_table
 

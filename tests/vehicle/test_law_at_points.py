@@ -12,8 +12,9 @@ from coeflab.fits import FITS
 from coeflab.fits.results.fit_result import FitResult
 from coeflab.fits.rows.sweeps import not_belonging
 from coeflab.law.scaling import Conditions
-from coeflab.vehicle.assemble import PlannedParameterFile, assemble
+from coeflab.vehicle.assemble import assemble
 from coeflab.vehicle.force_law import points_of
+from coeflab.vehicle.gathered import PlannedParameterFile
 from coeflab.vehicle.law_at_points import HeldRange, _within
 from coeflab.vehicle.parameter_file import ParameterFile, read_parameter_file
 from coeflab.vehicle.plausibility import law_findings, plausibility

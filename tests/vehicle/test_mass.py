@@ -15,7 +15,8 @@ from coeflab.core.errors import InputError
 from coeflab.core.provenance import Source
 from coeflab.law.rigid_body import MassProperties, about_another
 from coeflab.law.scaling import Conditions
-from coeflab.vehicle.assemble import PlannedParameterFile, assemble
+from coeflab.vehicle.assemble import assemble
+from coeflab.vehicle.gathered import PlannedParameterFile
 from coeflab.vehicle.parameter_file import ParameterFile, read_parameter_file
 from tests.formats.massed import CENTRE, INERTIA, MASS, torpedo
 from tests.vehicle.test_assemble import fitted

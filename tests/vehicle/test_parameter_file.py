@@ -12,15 +12,8 @@ import pytest
 
 from coeflab.core.errors import InputError
 from coeflab.study.study import Study
-from coeflab.vehicle.parameter_file import (
-    SCHEMA_FILE,
-    SCHEMA_VERSION,
-    VERSIONS,
-    ParameterFile,
-    is_later,
-    read_parameter_file,
-    schema,
-)
+from coeflab.vehicle.parameter_file import SCHEMA_FILE, ParameterFile, read_parameter_file, schema
+from coeflab.vehicle.schema_versions import SCHEMA_VERSION, VERSIONS, is_later
 
 SAMPLE = Path(__file__).parents[1] / "data" / "parameters_1_0.json"
 NEWEST = SAMPLE.with_name("parameters_1_3.json")

@@ -20,9 +20,9 @@ from coeflab.law.domain import TAPER, Domain, Extrapolation
 from coeflab.study.run import run
 from coeflab.study.study import Plan, Study
 from coeflab.tables.importers import PlannedTable
-from coeflab.vehicle.assemble import record, recorded
 from coeflab.vehicle.parameter_file import SCHEMA_FILE, ParameterFile, read_parameter_file, schema
 from coeflab.vehicle.parameter_model import ParameterModel, chosen, from_angles
+from coeflab.vehicle.recorded import record, recorded
 
 DATA = Path(__file__).parents[1] / "data"
 NEW, OLD = DATA / "parameters_1_1.json", DATA / "parameters_1_0.json"

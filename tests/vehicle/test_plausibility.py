@@ -15,7 +15,8 @@ from coeflab.study.study import Study
 from coeflab.vehicle.own_numbers import typed_file
 from coeflab.vehicle.parameter_file import ParameterFile, read_parameter_file
 from coeflab.vehicle.parameter_model import ParameterModel
-from coeflab.vehicle.plausibility import plausibility, stated_matrix
+from coeflab.vehicle.plausibility import plausibility
+from coeflab.vehicle.plausible_added_mass import stated_matrix
 from tests.formats import of_second_order as second
 from tests.formats.massed import ADDED
 from tests.formats.of_a_vehicle import floating

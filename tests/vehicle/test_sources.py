@@ -12,8 +12,8 @@ from coeflab.core.errors import InputError
 from coeflab.identify.tune import tune
 from coeflab.identify.tuning_plan import read_tuning_plan
 from coeflab.law.terms import Term
-from coeflab.motion.dynamics import term_force_of_one
 from coeflab.motion.manoeuvre import Manoeuvre, Phase
+from coeflab.motion.rates_of_one import term_force_of_one
 from coeflab.motion.simulators import rigid_body
 from coeflab.motion.trajectory import Ended
 from coeflab.motion.trim.trim import trim

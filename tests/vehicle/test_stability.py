@@ -12,8 +12,8 @@ from scipy.special import k0
 
 from coeflab.fits.uncertainty.propagation import Propagated
 from coeflab.vehicle.stability import (
-    SIGN_OPEN,
     Derived,
+    Verdict,
     index_gradient,
     missing_for_stability,
     sense,
@@ -104,7 +104,7 @@ def test_where_the_linear_interval_is_stable_and_the_drawn_one_holds_zero_the_si
     assert found.value - found.result.linear > 0.9
     assert found.interval[0] < 0.0 < found.interval[1]
     assert not found.decided
-    assert sense(found) == SIGN_OPEN
+    assert sense(found) == Verdict.SIGN_OPEN
 
 
 def test_where_the_linear_interval_holds_zero_and_the_drawn_one_does_not_the_sign_is_that_of_the_draws():

@@ -15,8 +15,9 @@ from coeflab.report.bench import bench_of
 from coeflab.report.document import Document
 from coeflab.report.formats import REPORTERS
 from coeflab.study.study import Plan, Study
-from coeflab.tables.campaign import InputUncertainty
-from coeflab.vehicle.assemble import PlannedParameterFile, assemble
+from coeflab.tables.input_uncertainty import InputUncertainty
+from coeflab.vehicle.assemble import assemble
+from coeflab.vehicle.gathered import PlannedParameterFile
 from coeflab.vehicle.parameter_parts import ParameterHydrostatics, ParameterSurface
 from tests.report.studies import small_table
 

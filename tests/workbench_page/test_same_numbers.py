@@ -7,8 +7,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from coeflab.motion.ensemble import Ensemble
 from coeflab.motion.manoeuvres import zigzag
-from coeflab.motion.marching import Ensemble, march
+from coeflab.motion.marching import march
 from coeflab.motion.simulation import determined_until, moved
 from coeflab.vehicle.stability import sense, stability
 from tests.workbench_page.conftest import SCALING, TABLES, fitted, parameter_file

@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from coeflab.cli import complete, options, show
+from coeflab.core.texts import input_error
 
 if TYPE_CHECKING:
     from coeflab.arm.tape import ClosedForm
@@ -46,10 +47,7 @@ def command(*, body: str, to: str, out: Path | None = None, symbols: bool | None
     place = located(body, "geometry")
     file = place / BODY if place.is_dir() else place
     if file.suffix != ".toml":
-        raise InputError(
-            shown(file.name), "a vehicle with an arm: the name of a shipped one, or its body.toml", file=file,
-            advice="A parameter file has no links and joints. Such as: coeflab derive urv_puma.",
-        )  # fmt: skip
+        raise input_error("arm.vehicle_arm_name", file, found=shown(file.name))
     chain = read_chain(file)
     try:
         from coeflab.arm.closed_form import derive

@@ -9,7 +9,7 @@ from typing import Any
 import typer
 
 from coeflab.cli import show
-from coeflab.core.errors import InputError
+from coeflab.core.texts import input_error
 
 TAKEN = {"file", "manoeuvre", "current", "record", "to", "out", "json"}
 
@@ -88,10 +88,7 @@ def simulate(
     from coeflab.report.tables.motion import columns, motion_csv, motion_parquet
 
     if strange := sorted(set(asked) - TAKEN):
-        raise InputError(
-            f"--{strange[0]} for a vehicle with an arm",
-            "--manoeuvre, --record, --current, --to, --out, --json, or an option of --help-options", column=f"--{strange[0]}",
-        )  # fmt: skip
+        raise input_error("arm.vehicle_arm", column=f"--{strange[0]}", strange=strange[0])
     record = {"record": asked["record"]} if "record" in asked else {}
     chain, manoeuvre, moved = moved_by(body, asked.get("manoeuvre", "phases"), {**record, **options})
     table = motion_csv(moved) if to == "csv" else motion_parquet(moved)

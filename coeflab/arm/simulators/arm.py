@@ -22,6 +22,7 @@ from coeflab.arm.thrusters import thruster_forces, thruster_matrix
 from coeflab.core.errors import InputError, shown
 from coeflab.core.limits import require_rows
 from coeflab.core.options import bounded, measured, one_of, parse_options
+from coeflab.core.texts import input_error
 from coeflab.core.types import Array
 from coeflab.motion.dynamics import rotations
 from coeflab.motion.manoeuvre import Manoeuvre, Phase
@@ -210,9 +211,7 @@ def _reference(
 def _require_no_commands(chain: Chain, manoeuvre: Manoeuvre) -> None:
     for phase in manoeuvre.phases:
         if any(one.name in phase.orders for one in chain.thrusters):
-            raise InputError(
-                f"at_once, with commands in {phase.name}", "modelled where a phase has commands", column="arm.thrusters"
-            )
+            raise input_error("arm.once_commands", column="arm.thrusters", name=phase.name)
 
 
 def _require_known(chain: Chain, manoeuvre: Manoeuvre) -> None:

@@ -16,8 +16,20 @@ from coeflab.bodies.mesh.meshing import meshed
 from coeflab.bodies.mesh.ring_sheets import ring_sheets
 from coeflab.bodies.outline import RingWing
 from coeflab.bodies.panel_solver import influence
-from coeflab.bodies.panel_solver.refinement import Refinement, refined, volume_gap
+from coeflab.bodies.panel_solver.panels import (
+    bisected,
+    panels_of,
+    sharpness,
+    side_of,
+    slenderness,
+    slivers,
+    split_in_four,
+    thin_share,
+    unmatched_edges,
+)
+from coeflab.bodies.panel_solver.refinement import Refinement, refined
 from coeflab.bodies.panel_solver.solve import PanelSolution, memory_needed, panel_added_mass
+from coeflab.bodies.panel_solver.volume_gap import volume_gap
 from coeflab.bodies.panel_solver.wall import WALL_NAMES, WALLS, Wall
 from coeflab.bodies.recognition import of_mesh
 from coeflab.bodies.shape import Part, Parts, Plate, Shape
@@ -26,6 +38,7 @@ from coeflab.core.errors import InputError, shown
 from coeflab.core.finding import Finding, Severity
 from coeflab.core.machine import compiles, physical_memory, stage
 from coeflab.core.options import bounded, measured, one_of, parse_options, share
+from coeflab.core.texts import input_error
 from coeflab.core.types import Array, brief
 from coeflab.law.added_mass import AddedMass
 
@@ -143,7 +156,7 @@ def _rings_alone(shape: TriangleMesh) -> tuple[RingWing, ...]:
     if not len(shape.faces) or len(shape.sheets):
         return ()
     area = shape.integrals.area
-    if 2.0 * shape.volume / area > influence.side_of(area, MOST_PANELS):
+    if 2.0 * shape.volume / area > side_of(area, MOST_PANELS):
         return ()
     seen = of_mesh(shape)
     return seen.rings if not (seen.hulls or seen.foils or seen.bluff) else ()
@@ -195,7 +208,7 @@ def _resolved(shape: Shape, chosen: Options) -> _Panelled:
 
 def _thin_share(panelled: _Panelled) -> float:
     closed = panelled.meshes[0][0]
-    return influence.thin_share(influence.panels_of(closed)) if len(closed) else 0.0
+    return thin_share(panels_of(closed)) if len(closed) else 0.0
 
 
 def _found(body: Body, shape: Shape, panelled: _Panelled, density: float, chosen: Options) -> tuple[AddedMass, float]:
@@ -247,12 +260,7 @@ def _wall(body: Body, panelled: _Panelled, chosen: Options) -> Wall | None:
     wall = Wall(point, np.array([0.0, 0.0, side]), factor)
     reach = float(np.max((panelled.finest.reshape(-1, 3) - body.reference_point) @ wall.normal))
     if reach >= chosen.distance:
-        raise InputError(
-            f"a wall {chosen.distance:g} m from the reference point of a body that reaches {reach:.4g} m towards it",
-            f"more than {reach:.4g} m",
-            column="panel.distance",
-            advice="The distance is from the reference point to the wall; the method needs water between body and wall.",
-        )
+        raise input_error("bodies.wall_reference_point", column="panel.distance", distance=chosen.distance, reach=reach)
     return wall
 
 
@@ -260,13 +268,13 @@ def _panelled(shape: Shape, panels: int, chosen: Options) -> _Panelled:
     """Families of closed parts and of sheets; what of a sheet lies within a closed part is left out."""
     most = 3 if chosen.extrapolate == "yes" else 1
     solid, sheets = _split(shape)
-    area = float(influence.panels_of(sheets).area.sum()) if len(sheets) else 0.0
+    area = float(panels_of(sheets).area.sum()) if len(sheets) else 0.0
     if solid is None:
         alone = _sheets(sheets, min(panels // 2, MOST_SHEETS), most)
         return _Panelled(tuple((np.zeros((0, 3, 3)), t) for t in alone), None, False)
     gated = solid if isinstance(solid, TriangleMesh) else meshed(solid, panels)
     _gate(gated, remeshed=gated is not solid)
-    edges = influence.sharpness(gated.vertices, gated.faces) > SHARP
+    edges = sharpness(gated.vertices, gated.faces) > SHARP
     if not len(sheets):
         closed = family(solid, panels, most)
         return _Panelled(tuple((c, sheets) for c in closed), gated, edges)
@@ -308,57 +316,44 @@ def _rectangle(part: Part) -> Array:
 
 def _sheets(corners: Array, count: int, most: int) -> list[Array]:
     """Sheets at up to three counts, each a quarter of the one before; the rims stay where they are."""
-    coarse = influence.bisected(corners, count // RATIO**2)
+    coarse = bisected(corners, count // RATIO**2)
     out = [coarse]
     while len(out) < 3 and len(out[0]) * RATIO <= max(count * 2, len(coarse)):
-        out.insert(0, influence.split_in_four(out[0]))
+        out.insert(0, split_in_four(out[0]))
     return out[:most]
 
 
 def _within(sheets: Array, closed: Array) -> NDArray[np.bool_]:
     """Which panels of a sheet lie inside closed surfaces, by the solid angle of these."""
-    return np.asarray(influence.seen_by(sheets.mean(axis=1), influence.panels_of(closed))[0].sum(axis=1) > INSIDE)
+    return np.asarray(influence.seen_by(sheets.mean(axis=1), panels_of(closed))[0].sum(axis=1) > INSIDE)
 
 
 def _gate(mesh: TriangleMesh, remeshed: bool) -> None:
     """Refuse what the method cannot do; faces without area where parts that we meshed were united are just left out."""
-    flat = int(np.count_nonzero(influence.slivers(mesh.vertices[mesh.faces])))
+    flat = int(np.count_nonzero(slivers(mesh.vertices[mesh.faces])))
     if flat and not remeshed:
         raise InputError(f"{flat} faces without area", "triangles", advice="Clean the mesh of degenerate faces.")
-    torn = influence.unmatched_edges(mesh.faces)
+    torn = unmatched_edges(mesh.faces)
     if torn:
-        raise InputError(
-            f"{torn} edges that are not shared by two faces wound alike",
-            "a closed surface whose faces look outward",
-            advice="Close the holes, merge the vertices, and wind all faces alike.",
-        )
-    ratio = influence.slenderness(mesh.integrals.second_moments)
+        raise input_error("bodies.edges_shared_two", torn=torn)
+    ratio = slenderness(mesh.integrals.second_moments)
     if ratio < THIN:
-        raise InputError(
-            f"a body whose smallest side is {ratio:.3g} of the next",
-            f"a ratio of at least {THIN:g} for panels on both faces",
-            advice="Describe it as a plate for the method primitives, whose formulas hold for zero thickness.",
-        )
+        raise input_error("bodies.body_whose_smallest", ratio=ratio, thin=THIN)
 
 
 def _thin(panelled: _Panelled) -> float:
     """Share of the surface on which panels are larger than the body is thick."""
     share = _thin_share(panelled)
     if share > THIN_SHARE:
-        raise InputError(
-            f"a body thinner than its panels are large on {share:.0%} of its surface, of {panelled.count:,} panels",
-            f"at most {THIN_SHARE:.0%} of such surface",
-            column="panels",
-            advice="Describe thin parts as plates for the method primitives, or as open sheets of the mesh.",
+        raise input_error(
+            "bodies.body_thinner_than", column="panels", share=share, count=panelled.count, thin_share=THIN_SHARE
         )
     return share
 
 
 def _compiled(kernel: str, panels: int) -> bool:
     if kernel == "numba" and not compiles():
-        raise InputError(
-            "the compiled kernel without numba", "numba", advice='Install "coeflab[fast]", or use the kernel numpy.'
-        )
+        raise input_error("bodies.compiled_kernel_without")
     return (kernel == "numba" or (kernel == "auto" and panels > COMPILE_FROM)) and compiles()
 
 
@@ -367,11 +362,8 @@ def _fits(panels: int) -> None:
     there = physical_memory()
     needed = memory_needed(panels)
     if there is not None and needed > there:
-        raise InputError(
-            f"{panels} panels, which need {needed / 2**30:.1f} GiB",
-            f"at most the {there / 2**30:.1f} GiB of this machine",
-            column="panels",
-            advice="Memory grows with the square of the panels: ask for fewer; extrapolation makes up for them.",
+        raise input_error(
+            "bodies.panels_need_gib", column="panels", panels=panels, needed=needed / 2**30, there=there / 2**30
         )
 
 

@@ -13,12 +13,21 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from coeflab.bodies import closed_forms
 from coeflab.bodies.body import Body
+from coeflab.bodies.closed_forms.ellipsoid import ellipsoid_added_mass
+from coeflab.bodies.closed_forms.parts import (
+    PLATE_ASPECTS,
+    box_added_mass,
+    cylinder_added_mass,
+    cylinder_with_ends,
+    plate_added_mass,
+)
+from coeflab.bodies.closed_forms.revolution import lamb_end_correction
+from coeflab.bodies.closed_forms.sections import SLENDEREST_RECTANGLE, rectangle
 from coeflab.bodies.mesh import solids
 from coeflab.bodies.mesh.mesh import TriangleMesh
 from coeflab.bodies.mesh.meshing import form_surface
-from coeflab.bodies.panel_solver.influence import panels_of, side_of, slivers, thin_share
+from coeflab.bodies.panel_solver.panels import panels_of, side_of, slivers, thin_share
 from coeflab.bodies.panel_solver.solve import PanelSolution, panel_added_mass
 from coeflab.bodies.shape import (
     Bar,
@@ -38,8 +47,10 @@ from coeflab.bodies.shape import (
 from coeflab.bodies.simplify.part_forms import THIN, likeness
 from coeflab.core.errors import InputError
 from coeflab.core.options import one_of, parse_options
+from coeflab.core.texts import input_error
 from coeflab.core.types import locked
-from coeflab.law.added_mass import AddedMass, composed
+from coeflab.law.added_mass import AddedMass
+from coeflab.law.definiteness import composed
 
 SIMPLIFIED_FACES = 20_000
 SMOOTH, EDGED = 2.0, 4.0 / 3.0  # orders of the panel method, without and with right-angled edges
@@ -123,19 +134,19 @@ class Options:
 
 def _own(form: Form, density: float, ends: str) -> NDArray[Any]:
     if isinstance(form, Cylinder):
-        cylinder = closed_forms.cylinder_with_ends if ends == "lamb" else closed_forms.cylinder_added_mass
+        cylinder = cylinder_with_ends if ends == "lamb" else cylinder_added_mass
         return cylinder(form.radius, form.length, density)
     if isinstance(form, Plate):
-        return closed_forms.plate_added_mass(form.chord, form.span, density)
+        return plate_added_mass(form.chord, form.span, density)
     if isinstance(form, Ellipsoid):
-        return closed_forms.ellipsoid_added_mass(form.axes, density)
+        return ellipsoid_added_mass(form.axes, density)
     if isinstance(form, Finned):
         return density * fins_on_hull(form)
     if isinstance(form, PANELLED):
         return density * by_panels(form).matrix
-    if isinstance(form, Bar) and form.height * closed_forms.SLENDEREST_RECTANGLE >= form.width:
+    if isinstance(form, Bar) and form.height * SLENDEREST_RECTANGLE >= form.width:
         return density * bar_added_mass(form)
-    return closed_forms.box_added_mass(form.sides, density)
+    return box_added_mass(form.sides, density)
 
 
 def bar_added_mass(form: Bar) -> NDArray[Any]:
@@ -143,8 +154,8 @@ def bar_added_mass(form: Bar) -> NDArray[Any]:
 
     Along x the blunt ends alone: 0.71 of the section's area to the power 3/2.
     """
-    section = np.diag(closed_forms.rectangle(form.width / 2.0, form.height / 2.0))
-    k = closed_forms.lamb_end_correction(form.length, form.volume)
+    section = np.diag(rectangle(form.width / 2.0, form.height / 2.0))
+    k = lamb_end_correction(form.length, form.volume)
     sway, heave = k.lateral * form.length * section[:2]
     turn = k.turning * form.length**3 / 12.0 * section[:2]
     return np.diag([BLUNT * (form.width * form.height) ** 1.5, sway, heave, form.length * section[2], turn[1], turn[0]])
@@ -160,8 +171,8 @@ def fins_on_hull(form: Finned) -> NDArray[Any]:
     of a cross without hull 2 s^4 / pi (Newman 1977) is 0.72 of that, and so it is cut down with the hull's share.
     """
     r, s, chord = form.radius, form.semi_span, form.chord
-    across = closed_forms.plate_added_mass(chord, 2.0 * (s - r), 1.0)[2, 2] * (1.0 + r / s) ** 2
-    alone = closed_forms.plate_added_mass(chord, s - r, 1.0)
+    across = plate_added_mass(chord, 2.0 * (s - r), 1.0)[2, 2] * (1.0 + r / s) ** 2
+    alone = plate_added_mass(chord, s - r, 1.0)
     about = form.count * (alone[2, 2] * (s + r) ** 2 / 4.0 + alone[3, 3])
     turn = across * chord**2 / 12.0
     if form.count == 2:
@@ -240,9 +251,9 @@ def _statements(parts: tuple[Part, ...], ends: str) -> tuple[str, ...]:
             more = "" if flow.converged else ", NOT CONVERGED: do not use it"
             more += f", {flow.thin:.0%} of the surface thinner than its panels are large" if flow.thin > WALL else ""
             out.append(PANELS.format(part.name, flow.panels, more))
-        if isinstance(form, Plate) and form.aspect > closed_forms.PLATE_ASPECTS[-1]:
+        if isinstance(form, Plate) and form.aspect > PLATE_ASPECTS[-1]:
             out.append(
-                f"{part.name}: aspect {form.aspect:.3g}, interpolated between {closed_forms.PLATE_ASPECTS[-1]:g} and infinity"
+                f"{part.name}: aspect {form.aspect:.3g}, interpolated between {PLATE_ASPECTS[-1]:g} and infinity"
             )
     return tuple(out)
 
@@ -281,11 +292,7 @@ def added_mass(body: Body, density: float, options: Mapping[str, Any] | None = N
     if isinstance(shape, TriangleMesh) and ends == "lamb":
         shape, words = _as_plate(shape)
     if not isinstance(shape, Parts):
-        raise InputError(
-            f"{body.name}, which has no parts",
-            "a body of parts, or a mesh like one plate",
-            advice="Use the method ellipsoid or strip, or make parts of a mesh with coeflab simplify.",
-        )
+        raise input_error("bodies.has_parts", name=body.name)
     matrix = composed(
         [_own(p.form, density, ends) for p in shape.parts],
         [p.rotation for p in shape.parts],

@@ -10,13 +10,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from coeflab.bodies.body import Body
-from coeflab.bodies.closed_forms import lamb_end_correction, strip_added_mass
+from coeflab.bodies.closed_forms.revolution import lamb_end_correction, strip_added_mass
 from coeflab.bodies.mesh.mesh import TriangleMesh
 from coeflab.bodies.shape import Revolution, Shape, as_revolution
-from coeflab.bodies.strips import Strips, ellipsoid_correction, joints, strips
-from coeflab.core.errors import InputError
+from coeflab.bodies.stations import joints
+from coeflab.bodies.strips import Strips, ellipsoid_correction, strips
 from coeflab.core.options import bounded, one_of, parse_options
-from coeflab.law.added_mass import AddedMass, composed
+from coeflab.core.texts import input_error
+from coeflab.law.added_mass import AddedMass
+from coeflab.law.definiteness import composed
 
 summary = "sections along x, exact for circles, by boundary elements for any shape; end correction none or lamb"
 citations = ("newman1977", "bryson1954", "lamb1932")
@@ -73,11 +75,7 @@ def added_mass(body: Body, density: float, options: Mapping[str, Any] | None = N
     else:
         revolution = as_revolution(shape)
         if revolution is None:
-            raise InputError(
-                f"{body.name}, which is no mesh and no body of revolution about x",
-                "a mesh, a hull form, or a single cylinder, spheroid or sphere along x",
-                advice="Use the method primitives or ellipsoid.",
-            )
+            raise input_error("bodies.mesh_body_revolution", name=body.name)
         *own, statements = _of_revolution(revolution, corrected)
     fine, *coarse = (composed([density * m], [np.eye(3)], [shape.centre_of_volume], body.reference_point) for m in own)
     error = np.abs(fine - coarse[0]) if coarse else None
@@ -106,11 +104,7 @@ def _of_mesh(
         found = strips(points, shape.faces, count, places=places)
         coarse = strips(points, shape.faces, count // 2, COARSE, places)
     except ValueError as why:
-        raise InputError(
-            f"{body.name}, {why}",
-            "a closed mesh whose sections have at most 40 contours",
-            advice="Unite its parts first.",
-        ) from None
+        raise input_error("bodies.closed_mesh_whose", name=body.name, why=why) from None
     live = np.diag(found.matrix) > ROUNDING * np.diag(found.matrix).max()
     change = float(np.max(np.abs(np.diag(coarse.matrix)[live] / np.diag(found.matrix)[live] - 1.0)))
     words = (

@@ -9,12 +9,23 @@ from itertools import product
 
 import numpy as np
 
+from coeflab.bodies.mesh.crossing_faces import crossing_faces
 from coeflab.bodies.mesh.decimation import decimated
-from coeflab.bodies.mesh.mesh import TriangleMesh, mesh_integrals
+from coeflab.bodies.mesh.integrals import mesh_integrals
+from coeflab.bodies.mesh.mesh import TriangleMesh
 from coeflab.bodies.mesh.meshing import FEWEST, meshed
 from coeflab.bodies.mesh.solids import divided, solid, surface
-from coeflab.bodies.mesh.topology import crossing_faces
-from coeflab.bodies.panel_solver import influence
+from coeflab.bodies.panel_solver.panels import (
+    bisected,
+    graded,
+    panels_of,
+    sharp_points,
+    side_of,
+    slivers,
+    split_in_four,
+    thin_share,
+    unfit_share,
+)
 from coeflab.bodies.shape import Shape
 from coeflab.core.errors import InputError
 from coeflab.core.machine import stage
@@ -72,7 +83,7 @@ def family(shape: Shape, panels: int, most: int = 3) -> tuple[Array, ...]:
 def _corners(mesh: TriangleMesh) -> Array:
     """Of the faces that have an area; decimation can leave others, which are nothing to integrate over."""
     corners = mesh.vertices[mesh.faces]
-    return np.asarray(corners[~influence.slivers(corners)])
+    return np.asarray(corners[~slivers(corners)])
 
 
 def _best(counts: list[int], panels: int) -> tuple[int, ...]:
@@ -95,19 +106,19 @@ def _of_mesh(mesh: TriangleMesh, panels: int, most: int) -> tuple[Array, ...]:
     stage(f"panels from {len(mesh.faces):,} faces")
     own = _corners(mesh)
     if len(own) * RATIO**2 <= panels:
-        lines = influence.sharp_points(mesh.vertices, mesh.faces, influence.side_of(mesh.integrals.area, panels))
-        coarse = influence.graded(own, panels // RATIO**2, lines)
-        if influence.unfit_share(coarse) > MOST_UNFIT:
-            coarse = influence.bisected(own, panels // RATIO**2)
-        if influence.unfit_share(coarse) <= MOST_UNFIT:
-            middle = influence.split_in_four(coarse)
-            return (influence.split_in_four(middle), middle, coarse)[:most]
-    elif len(own) <= panels <= OWN * len(own) and influence.unfit_share(own) <= MOST_UNFIT:
+        lines = sharp_points(mesh.vertices, mesh.faces, side_of(mesh.integrals.area, panels))
+        coarse = graded(own, panels // RATIO**2, lines)
+        if unfit_share(coarse) > MOST_UNFIT:
+            coarse = bisected(own, panels // RATIO**2)
+        if unfit_share(coarse) <= MOST_UNFIT:
+            middle = split_in_four(coarse)
+            return (split_in_four(middle), middle, coarse)[:most]
+    elif len(own) <= panels <= OWN * len(own) and unfit_share(own) <= MOST_UNFIT:
         found = (own, *_coarser(mesh, most - 1))
         if len(found) == most:
             return _graded(found, panels)
     finest = meshed(_split(mesh, panels), panels)
-    if influence.thin_share(influence.panels_of(_corners(finest))) <= MOST_THIN:
+    if thin_share(panels_of(_corners(finest))) <= MOST_THIN:
         return _corners(finest), *_coarser(finest, most - 1)
     finest = meshed(finest, max(int(FIRST_SHARE * panels), FEWEST))
     return _graded((_corners(finest), *_coarser(finest, most - 1)), panels)
@@ -115,9 +126,9 @@ def _of_mesh(mesh: TriangleMesh, panels: int, most: int) -> tuple[Array, ...]:
 
 def _graded(meshes: tuple[Array, ...], panels: int) -> tuple[Array, ...]:
     """Each with smaller panels where the body is thinner than these are large, up to the count that it stands for."""
-    if influence.thin_share(influence.panels_of(meshes[0])) <= MOST_THIN:
+    if thin_share(panels_of(meshes[0])) <= MOST_THIN:
         return meshes
-    return tuple(influence.graded(corners, panels * len(corners) // len(meshes[0])) for corners in meshes)
+    return tuple(graded(corners, panels * len(corners) // len(meshes[0])) for corners in meshes)
 
 
 def _split(mesh: TriangleMesh, panels: int) -> TriangleMesh:
@@ -126,7 +137,7 @@ def _split(mesh: TriangleMesh, panels: int) -> TriangleMesh:
         whole = solid(mesh.vertices, mesh.faces)
     except ValueError:
         return mesh
-    parted = divided(whole, influence.side_of(mesh.integrals.area, panels), MOST_SPLIT * panels)
+    parted = divided(whole, side_of(mesh.integrals.area, panels), MOST_SPLIT * panels)
     return TriangleMesh(*surface(parted), mesh.exact_volume)
 
 
@@ -141,5 +152,5 @@ def _coarser(mesh: TriangleMesh, most: int) -> list[Array]:
         if crossing_faces(vertices, faces):
             break
         corners = vertices[faces]
-        out.append(np.asarray(corners[~influence.slivers(corners)]))
+        out.append(np.asarray(corners[~slivers(corners)]))
     return out

@@ -7,16 +7,17 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
+from functools import partial
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
+from coeflab.bodies.mesh.crossing_faces import crossing_faces
 from coeflab.bodies.mesh.solids import Solid, solid, surface
 from coeflab.bodies.mesh.topology import (
     Filled,
     Labels,
-    crossing_faces,
     degenerate,
     edges,
     filled,
@@ -30,26 +31,14 @@ from coeflab.bodies.mesh.topology import (
 )
 from coeflab.core.errors import InputError
 from coeflab.core.machine import stage
+from coeflab.core.texts import input_error
 from coeflab.core.types import Array, Faces, brief
 
 MOST_TESTED, MOST_SHELLS = 50_000, 1000
 NOTHING, JOINED, OVERLAP, SHEET = 1e-9, 1e-6, 1e-6, 1e-6
-ASK = "set repair = true under [mesh], or --repair with a bare mesh file"
-ON_REQUEST = f"Mend it where it was made, or {ASK}."
-NEARLY = f"Its vertices nearly meet: {ASK}, to join them."
-PLATE = (
-    "Describe it as a plate in a body.toml of reader primitives: the formulas of plates need no thickness; or take it as a "
-    "sheet with water on both sides: set sheets = true under [mesh], or --sheets."
-)
-BY_HAND = "Mend it where it was made; repair does not untangle surfaces."
 SMALL_HOLE = 0.01
-BOTH_SIDES = "where water is on both sides of the wall, set sheets = true, or --sheets."
 NAMED = 3
 ROUNDED = 1e-6  # of the size: single precision moves corners by a tenth of it
-FILL = (
-    f"Close them where it was made. Or {ASK}, which closes holes of up to {SMALL_HOLE:.0%} of the surface each and mends "
-    "what else it can (fill = true, or --fill, the holes alone); or, where water is on both sides of the wall, sheets = true, or --sheets."
-)
 
 
 @brief
@@ -82,33 +71,27 @@ def examined(vertices: Array, faces: Faces, file: Path, unfilled: str = "") -> S
     InputError
         The first of these that does not hold, with the way out.
     """
-
-    def fail(found: str, expected: str, advice: str = ON_REQUEST) -> InputError:
-        return InputError(found, expected, file=file, advice=advice)
-
+    fail = partial(input_error, file=file)
     stage(f"joining the corners of {len(faces):,} faces")
     vertices, faces = welded(vertices, faces)
     if _thickness(vertices) < SHEET:
-        raise fail("a plate of zero thickness: all corners lie in one plane", "a surface that encloses a volume", PLATE)
+        raise fail("mesh.plate")
     stage(f"looking for holes and turned faces among {len(faces):,}")
     twice = int(repeated(faces).sum())
     if twice:
-        raise fail(f"{twice} duplicate faces of {len(faces)}", "every face once")
+        raise fail("mesh.duplicates", count=twice, of=len(faces))
     border = edges(faces)
     if border.open or border.crowded:
         what = [f"{border.open} edges with one face"] * bool(border.open)
         what += [f"{border.crowded} edges with more than two"] * bool(border.crowded)
-        found, expected = f"a mesh that is not watertight: {' and '.join(what)}", "two faces at every edge"
-        if border.open and unfilled:
-            raise fail(f"{found}; not filled: {unfilled}", expected, f"Close them where it was made; or, {BOTH_SIDES}")
-        raise fail(found, expected, NEARLY if _nearly_closed(vertices, faces) else FILL if border.open else BY_HAND)
+        why = "crowded" if not border.open else "unfilled" if unfilled else "open_edges"
+        why = "nearly_closed" if why != "unfilled" and _nearly_closed(vertices, faces) else why
+        raise fail(f"mesh.{why}", edges=" and ".join(what), unfilled=unfilled, limit=SMALL_HOLE)
     flat = int(degenerate(vertices, faces).sum())
     if flat:
-        raise fail(f"{flat} degenerate faces of {len(faces)}, whose corners lie on a line", "faces with an area")
+        raise fail("mesh.degenerate", count=flat, of=len(faces))
     if border.turned:
-        raise fail(
-            f"inconsistent winding: neighbours face opposite sides at {border.turned} edges", "all faces outward"
-        )
+        raise fail("mesh.winding", count=border.turned)
     words: tuple[str, ...] = ()
     if border.shared:
         # Solids that meet in an edge: each gets vertices of its own there, as everything behind this gate expects.
@@ -126,7 +109,7 @@ def examined(vertices: Array, faces: Faces, file: Path, unfilled: str = "") -> S
         if crossing is None:
             words += ("self-intersection not looked for: too many faces lie close together",)
         elif crossing:
-            raise fail(f"a surface that cuts through itself, in {crossing} pairs of faces", "a simple surface", BY_HAND)
+            raise fail("mesh.crossing", count=crossing)
     return SoundMesh(vertices, faces, words)
 
 
@@ -165,17 +148,12 @@ def _outward(volume: Array, area: Array, fail: Callable[..., InputError]) -> Non
     """Every shell encloses something, and from outside."""
     empty = int(np.sum(np.abs(volume) <= NOTHING * area**1.5))
     if empty:
-        raise fail(f"{empty} of {len(volume)} shells with zero volume", "a surface that encloses a volume", BY_HAND)
+        raise fail("mesh.empty_shells", count=empty, of=len(volume))
     inward = volume < 0.0
     if inward.all():
-        raise fail("inward normals: all faces look into the body", "faces that look outward")
+        raise fail("mesh.inward")
     if inward.any():
-        raise fail(
-            f"{inward.sum()} of {len(volume)} shells that look inward: a cavity, the inner side of a wall, or a part turned "
-            "inside out",
-            "the outer surface alone",
-            f"Water enclosed in the hull moves with it: leave inner walls out, or {ASK}.",
-        )
+        raise fail("mesh.cavity", count=inward.sum(), of=len(volume))
 
 
 def _boxes(vertices: Array, faces: Faces, shell: Labels, count: int) -> tuple[Array, Array]:
@@ -189,7 +167,7 @@ def _boxes(vertices: Array, faces: Faces, shell: Labels, count: int) -> tuple[Ar
 def _apart(vertices: Array, faces: Faces, shell: Labels, count: int, fail: Callable[..., InputError]) -> None:
     """Shells do not overlap; the volume that they share would count twice."""
     if count > MOST_SHELLS:
-        raise fail(f"{count} separate shells", f"at most {MOST_SHELLS}", "Delete loose triangles and fittings.")
+        raise fail("mesh.shells", count=count, most=MOST_SHELLS)
     low, high = _boxes(vertices, faces, shell, count)
     meet = np.all((low[:, None] < high[None]) & (low[None] < high[:, None]), axis=2)
     close = np.argwhere(np.triu(meet, 1))
@@ -198,11 +176,7 @@ def _apart(vertices: Array, faces: Faces, shell: Labels, count: int, fail: Calla
     common = [(a ^ b).volume() / min(a.volume(), b.volume()) for a, b in pairs]
     overlapping = sum(c > OVERLAP for c in common)
     if overlapping:
-        raise fail(
-            f"{count} shells of which {overlapping} pairs overlap, so that their common volume counts twice",
-            "one surface around all",
-            f"Union them first, or {ASK}.",
-        )
+        raise fail("mesh.overlapping", count=count, pairs=overlapping)
 
 
 def as_solid(vertices: Array, faces: Faces, fail: Callable[..., InputError]) -> Solid:
@@ -210,7 +184,7 @@ def as_solid(vertices: Array, faces: Faces, fail: Callable[..., InputError]) -> 
     try:
         return solid(*welded(vertices, faces))
     except ValueError as why:
-        raise fail(str(why), "a closed surface", BY_HAND) from None
+        raise fail("mesh.no_solid", why=why) from None
 
 
 def sound(
@@ -257,10 +231,7 @@ def sound(
         thin, faces = faces[loose], faces[~loose]
         turned = oriented(thin) if len(thin) else thin
         if turned is None:
-            raise InputError(
-                "a sheet with one side only, or three that meet in an edge and cannot be turned alike", "sheets with two sides",
-                file=file, advice="Cut it where sheets meet, so that each has edges of its own there.",
-            )  # fmt: skip
+            raise input_error("mesh.one_sided", file)
         corner = vertices[turned]
         area = (
             float(np.linalg.norm(np.cross(corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0]), axis=1).sum())
@@ -306,9 +277,7 @@ def repaired(vertices: Array, faces: Faces, file: Path, unfilled: str = "") -> S
     if len(faces):
         faces = _once(faces)
     if not len(faces):
-        raise InputError(
-            "no face with an area", "triangles of a closed surface", file=file, advice="Is the file damaged?"
-        )
+        raise input_error("mesh.no_area", file)
     _say(words, count - len(faces), "degenerate or duplicate faces dropped")
     # Where solids meet in an edge, turning faces alike would guess which belong together; wound in balance they need none.
     turned = faces if edges(faces).shared and edges(faces).sound else oriented(faces)
@@ -367,10 +336,7 @@ def _facing(faces: Faces) -> NDArray[np.bool_]:
 
 
 def _whole(vertices: Array, faces: Faces, file: Path) -> Solid:
-    def fail(found: str, expected: str, advice: str) -> InputError:
-        return InputError(found, expected, file=file, advice=advice)
-
-    return as_solid(vertices, faces, fail)
+    return as_solid(vertices, faces, partial(input_error, file=file))
 
 
 def _without_slivers(vertices: Array, faces: Faces, file: Path) -> tuple[Array, Faces]:

@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 from coeflab.core.errors import InputError, shown
 from coeflab.core.files import typed
 from coeflab.core.text.xml import numbers, read_xml
+from coeflab.core.texts import input_error
 from coeflab.core.types import Array, Faces
 
 Surface = tuple[Array, Faces]
@@ -44,9 +45,7 @@ def robot_surface(path: Path, load: Loaded) -> Surface:
     root = read_xml(path)
     pieces = list(_urdf(root, path, load) if path.suffix.lower() == ".urdf" else _sdf(root, path, load))
     if not pieces:
-        raise InputError(
-            "no <visual> and no <collision> with a shape", "links with geometry", file=path, advice=VERBATIM
-        )
+        raise input_error("mesh.visual_collision_shape", path, advice=VERBATIM)
     return _joined(pieces)
 
 
@@ -84,9 +83,7 @@ def _urdf(root: Element, path: Path, load: Loaded) -> Iterator[Surface]:
             name, own = joints[name]
             pose, seen = own @ pose, seen + 1
             if seen > MOST_LINKS:
-                raise InputError(
-                    f"joints in a circle at link {shown(link.get('name', ''))}", "a tree of links", file=path
-                )
+                raise input_error("mesh.joints_circle_link", path, get=shown(link.get("name", "")))
         for shape in _shapes(link):
             yield _posed(_geometry(shape, path, load), pose @ _origin(shape.find("origin"), path))
 
@@ -123,12 +120,7 @@ def _pose(pose: Element | None, path: Path) -> Array:
     if pose is None or not (pose.text or "").strip():
         return np.eye(4)
     if pose.get("relative_to"):
-        raise InputError(
-            f"a pose relative to {shown(pose.get('relative_to', ''))}",
-            "poses relative to the parent",
-            file=path,
-            advice=VERBATIM,
-        )
+        raise input_error("mesh.pose_in_other_frame", path, get=shown(pose.get("relative_to", "")), advice=VERBATIM)
     six = numbers(pose.text, (6,), "pose", path)
     return _placed(six[:3], six[3:])
 
@@ -189,7 +181,4 @@ def _file(uri: str, path: Path) -> Path:
         for one in below:
             if (there := typed(folder / one)).is_file():
                 return there
-    raise InputError(
-        f"the mesh {shown(uri)}, which is not there", "a mesh beside the model, or below one of the four folders above it",
-        file=path, advice="Copy the meshes next to the model, or name them from its folder.",
-    )  # fmt: skip
+    raise input_error("mesh.missing_mesh", path, uri=shown(uri))

@@ -10,7 +10,8 @@ from typing import Annotated, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from coeflab.bodies.mesh.file import LARGEST_TEXT, load
+from coeflab.bodies.mesh.declared_faces import LARGEST_TEXT
+from coeflab.bodies.mesh.file import load
 from coeflab.bodies.mesh.gates import sound
 from coeflab.bodies.mesh.mesh import TriangleMesh
 from coeflab.core import declarations as takes

@@ -12,7 +12,8 @@ import numba
 import numpy as np
 from numpy.typing import NDArray
 
-from coeflab.bodies.panel_solver.influence import REACH, Panels, Seen
+from coeflab.bodies.panel_solver.influence import REACH, Seen
+from coeflab.bodies.panel_solver.panels import Panels
 from coeflab.core.types import Array
 
 

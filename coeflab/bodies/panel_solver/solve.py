@@ -15,7 +15,8 @@ from functools import partial
 import numpy as np
 from numpy.typing import NDArray
 
-from coeflab.bodies.panel_solver.influence import Panels, gradients, panels_of, seen_by
+from coeflab.bodies.panel_solver.influence import gradients, seen_by
+from coeflab.bodies.panel_solver.panels import Panels, panels_of
 from coeflab.bodies.panel_solver.wall import Wall
 from coeflab.core.types import Array, brief, locking, remembered
 from coeflab.law.transforms import moved

@@ -8,10 +8,10 @@ from pathlib import Path
 from typing import Protocol, runtime_checkable
 
 from coeflab.bodies.body import Body
-from coeflab.core.errors import InputError
 from coeflab.core.registry import Plugin, Registry
 from coeflab.core.text.bounded import own_text
 from coeflab.core.text.toml import quoted, read_toml
+from coeflab.core.texts import input_error
 
 MESHES = (".stl", ".obj", ".ply", ".glb")
 
@@ -33,10 +33,7 @@ def read_body(path: Path) -> Body:
         A mesh without its body.toml, with the lines of one to copy; what the reader raises.
     """
     if path.suffix.lower() in MESHES:
-        why = InputError(
-            f"a mesh, {path.name}", "a body.toml, which says the mesh's unit and axes", file=path,
-            advice="Write these lines into body.toml beside it, mend them, and name that file:",
-        )  # fmt: skip
+        why = input_error("bodies.body_toml_says", path, name=path.name)
         why.example = _mesh_body(path)
         raise why
     head = read_toml(path).content.get("body")

@@ -17,9 +17,11 @@ import numpy as np
 
 from coeflab.bodies.body import Body, Configuration
 from coeflab.bodies.body_file import ShapedBodyFile
-from coeflab.bodies.mesh.mesh import TriangleMesh, enclosed
-from coeflab.bodies.mesh.meshing import lofted, surface_of, united
+from coeflab.bodies.mesh.facet_volume import enclosed
+from coeflab.bodies.mesh.mesh import TriangleMesh
+from coeflab.bodies.mesh.meshing import surface_of, united
 from coeflab.bodies.mesh.particulars import computed
+from coeflab.bodies.mesh.structured_surface import lofted
 from coeflab.bodies.outline import Foil, Outline, RingWing, Sections
 from coeflab.bodies.outlining import SLENDER, Radius, Trapezoid, of_parts, radius_towards, round_hull, with_controls
 from coeflab.bodies.pieces import HULL, Control, Piece, hull_piece, part_pieces
@@ -28,6 +30,7 @@ from coeflab.bodies.shape import Ellipsoid, Part, Parts, Revolution, within_reac
 from coeflab.core import declarations as takes
 from coeflab.core.errors import InputError, shown
 from coeflab.core.text.toml import read_toml
+from coeflab.core.texts import input_error
 from coeflab.core.types import Array
 
 summary = "a hull (spheroid, Myring, SUBOFF) with fins, sails, ducts and plates, or these alone, that controls may turn"
@@ -117,13 +120,9 @@ class HullKeys(takes.Declaration):
         for name in dict.fromkeys(key for kind in NEEDED for key in (*NEEDED[kind], *ALLOWED[kind])):
             given = getattr(self, name) is not None
             if name in needed and not given:
-                raise InputError(
-                    "nothing", f"the sizes of a hull of kind {self.kind}, {', '.join(needed)}", column=name
-                )
+                raise input_error("bodies.sizes_hull_kind", column=name, kind_2=self.kind, needed=", ".join(needed))
             if given and name not in allowed:
-                raise InputError(
-                    "an unknown key", f"keys of a hull of kind {self.kind}, {', '.join(allowed)}", column=name
-                )
+                raise input_error("bodies.unknown_key", column=name, kind_2=self.kind, allowed=", ".join(allowed))
         shape = self.shape
         if isinstance(shape, Parts) and not of_parts(shape).hulls:
             expected = (
@@ -345,9 +344,7 @@ class DuctKeys(takes.Declaration):
         """A section that is known, an opening."""
         inner = self.inner
         if inner <= 0.0:
-            raise InputError(
-                f"a section {self.thick:g} m thick about {self.diameter:g} m", "an opening within", column="diameter"
-            )
+            raise input_error("bodies.section_thick_about", column="diameter", thick=self.thick, diameter=self.diameter)
 
     @property
     def thick(self) -> float:

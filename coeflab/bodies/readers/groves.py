@@ -22,9 +22,10 @@ from numpy.polynomial import Polynomial
 
 from coeflab.bodies.body import Body, Configuration
 from coeflab.bodies.body_file import ShapedBodyFile
-from coeflab.bodies.closed_forms import graded_nodes
+from coeflab.bodies.closed_forms.revolution import graded_nodes
 from coeflab.bodies.mesh.mesh import TriangleMesh
-from coeflab.bodies.mesh.meshing import lofted, meshed, united
+from coeflab.bodies.mesh.meshing import meshed, united
+from coeflab.bodies.mesh.structured_surface import lofted
 from coeflab.bodies.outline import Foil, Outline
 from coeflab.bodies.outlining import Trapezoid, radius_towards, round_hull, with_controls
 from coeflab.bodies.pieces import Control, Piece, hull_piece
@@ -139,10 +140,6 @@ def _half(q: Array) -> Array:
     return 0.2969 * np.sqrt(q) - 0.126 * q - 0.3516 * q**2 + 0.2852 * q**3 - 0.1045 * q**4
 
 
-def _half_slope(q: Array) -> Array:
-    return 0.14845 / np.sqrt(q) - 0.126 - 0.7032 * q + 0.8556 * q**2 - 0.418 * q**3
-
-
 def _chord(y: Array) -> Array:
     return TAPER * y + AXIS_CHORD
 
@@ -166,7 +163,7 @@ def plane(hull: Hull) -> Appendage:
     """
     q, q_weight = graded_nodes(0.0, 1.0, APPENDAGE_NODES, APPENDAGE_GRADING)
     share, share_weight = graded_nodes(0.0, 1.0, APPENDAGE_NODES)
-    half, slope = _half(q), _half_slope(q)
+    half, slope = _half(q), (0.14845 / np.sqrt(q) - 0.126 - 0.7032 * q + 0.8556 * q**2 - 0.418 * q**3)
     tip, foot = _chord(np.array(TIP)), _chord(_foot(hull, q[:, None], share))
     second = (tip**3 - foot**3) / (3.0 * TAPER) @ share_weight
     third = (tip**4 - foot**4) / (4.0 * TAPER) @ share_weight

@@ -1,14 +1,9 @@
-"""A mesh as cylinders, plates, ellipsoids and boxes: cut into bodies, each replaced by the form that it resembles.
-
-Boxes that a person draws around parts of a body.
-"""
+"""A mesh as cylinders, plates, ellipsoids and boxes: cut into bodies, each replaced by the form that it resembles."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from pathlib import Path
-from typing import Annotated
 
 import numpy as np
 
@@ -17,124 +12,19 @@ from coeflab.bodies.mesh import solids
 from coeflab.bodies.mesh.mesh import TriangleMesh
 from coeflab.bodies.mesh.meshing import meshed
 from coeflab.bodies.shape import THIN, Faceted, Part, Parts
-from coeflab.bodies.simplify.part_forms import Likeness, Piece, likeness
-from coeflab.bodies.simplify.segmentation import convex_pieces, patches, segments, without_overlap
-from coeflab.bodies.simplify.simplified import SIMPLIFIED_FACES, Simplification, SimplifiedPart
-from coeflab.core.declarations import Declaration, Text, declared, numbers
+from coeflab.bodies.simplify.boxes import NamedBox
+from coeflab.bodies.simplify.convex_pieces import convex_pieces
+from coeflab.bodies.simplify.part_forms import Likeness, likeness
+from coeflab.bodies.simplify.seams import patches
+from coeflab.bodies.simplify.segmentation import segments, without_overlap
+from coeflab.bodies.simplify.simplification import SIMPLIFIED_FACES, Simplification, SimplifiedPart
+from coeflab.bodies.simplify.volume_forms import Piece
 from coeflab.core.errors import InputError, shown
 from coeflab.core.machine import one_thread
 from coeflab.core.provenance import Source
-from coeflab.core.text.toml import read_toml
+from coeflab.core.texts import input_error
 from coeflab.core.types import brief
-from coeflab.core.units import quantity
 from coeflab.law.transforms import angles, rotation, snapped
-
-WRITTEN = "NAME=x0:x1,y0:y1,z0:z1 in m, FRD, from the datum"
-
-
-@brief
-@dataclass(frozen=True, slots=True)
-class NamedBox:
-    """A box along the body's axes; m, FRD, from the datum.
-
-    Attributes
-    ----------
-    name : str
-        Of the part inside.
-    low, high : tuple of float
-        Opposite corners.
-    """
-
-    name: str
-    low: tuple[float, float, float]
-    high: tuple[float, float, float]
-
-    def __post_init__(self) -> None:
-        if not np.all(np.less(self.low, self.high)):
-            sides = ", ".join(f"{a:g}:{b:g}" for a, b in zip(self.low, self.high, strict=True))
-            raise InputError(f"the box {shown(self.name)} over {sides}", "each side from a lower to a higher value")
-
-
-def parse_box(text: str) -> NamedBox:
-    """Read ``mast=0.05:0.15,-0.05:0.05,-0.4:-0.07``; a length may carry its unit (``5 cm``).
-
-    Raises
-    ------
-    InputError
-    """
-    name, equals, sides = text.partition("=")
-    ranges = [side.split(":") for side in sides.split(",")]
-    if not equals or not name.strip() or len(ranges) != 3 or any(len(r) != 2 for r in ranges):
-        raise InputError(shown(text), WRITTEN, column="--box")
-    (x0, x1), (y0, y1), (z0, z1) = ([_length(end) for end in r] for r in ranges)
-    return NamedBox(name.strip(), (x0, y0, z0), (x1, y1, z1))
-
-
-def _length(text: str) -> float:
-    try:
-        return quantity(float(text), "length", key="--box")
-    except ValueError:
-        return quantity(text, "length", key="--box")
-
-
-Side = Annotated[tuple[float, ...], numbers(2, "length", "[low, high], lengths in m or with units")]
-
-
-@dataclass(frozen=True, slots=True)
-class BoxKeys(Declaration):
-    """A box drawn around a part.
-
-    Attributes
-    ----------
-    name : str
-        Of the part inside.
-    x, y, z : (float, float)
-        [low, high], m, FRD, from the datum.
-    """
-
-    name: Text
-    x: Side
-    y: Side
-    z: Side
-
-    def check(self) -> None:
-        """A box from a lower to a higher corner."""
-        _ = self.built
-
-    @property
-    def built(self) -> NamedBox:
-        """The box."""
-        (x0, x1), (y0, y1), (z0, z1) = self.x, self.y, self.z
-        return NamedBox(self.name, (x0, y0, z0), (x1, y1, z1))
-
-
-@dataclass(frozen=True, slots=True)
-class BoxFile(Declaration):
-    """Boxes that a person draws around parts of a body.
-
-    Attributes
-    ----------
-    box : array of tables
-        One for each part.
-    """
-
-    box: tuple[BoxKeys, ...] = ()
-
-    def check(self) -> None:
-        """One at least."""
-        if not self.box:
-            raise InputError("no [[box]]", "at least one, with name, x, y and z", column="box")
-
-
-def read_boxes(path: Path) -> tuple[NamedBox, ...]:
-    """The ``[[box]]`` tables of a TOML file, each with name, x, y and z as [low, high].
-
-    Raises
-    ------
-    InputError
-    """
-    return tuple(b.built for b in declared(BoxFile, read_toml(path)).box)
-
 
 MOST_FACES, DRAWN_FACES = 1_000_000, 20_000
 SNAP, SNAP_CUT = np.radians(0.3), np.radians(2.0)
@@ -209,14 +99,10 @@ def simplify(
     largest = max(range(len(found)), key=lambda k: found[k].solid.volume())
     likes[largest] = _no_thick_plate(likes[largest], found[largest].solid.volume())
     if all(like.kind == "plate" for like in likes):
-        raise InputError(
-            "nothing but plates", "at least one part that displaces water",
-            advice="Describe them in a body.toml of reader primitives; of one alone coeflab added-mass takes the mesh itself.",
-        )  # fmt: skip
+        raise input_error("bodies.nothing_but_plates")
     if expected is not None and len(found) != expected:
-        raise InputError(
-            f"{len(found)} parts ({', '.join(_counted(likes))})", f"{expected} parts, as --parts says",
-            advice="Name parts with --box, or look at the overlay without --parts.",
+        raise input_error(
+            "bodies.parts_parts_says", count_of_found=len(found), counted=", ".join(_counted(likes)), expected=expected,
         )  # fmt: skip
     length = float(mesh.extents.max())
     parts = _named([_part(p, like, length) for p, like in zip(found, likes, strict=True)])
@@ -255,10 +141,7 @@ def _refuse_idle_boxes(boxes: Sequence[NamedBox], mesh: TriangleMesh) -> None:
         if not np.any(np.all((mesh.vertices >= b.low) & (mesh.vertices <= b.high), axis=1)):
             low, high = mesh.vertices.min(axis=0), mesh.vertices.max(axis=0)
             reach = ", ".join(f"{axis} {a:.4g} to {z:.4g}" for axis, a, z in zip("xyz", low, high, strict=True))
-            raise InputError(
-                f"the box {shown(b.name)}, which holds no vertex of the mesh", f"a box within {reach} m",
-                advice="Boxes are in m, FRD, from the datum: z is down.",
-            )  # fmt: skip
+            raise input_error("bodies.box_holds_vertex", name=shown(b.name), reach=reach)
 
 
 def _boxed(whole: solids.Solid, boxes: Sequence[NamedBox]) -> tuple[list[_Piece], solids.Solid]:
@@ -295,10 +178,7 @@ def _pieces(whole: solids.Solid, boxes: Sequence[NamedBox]) -> tuple[list[_Piece
     out, rest = _boxed(whole, boxes)
     shells = solids.pieces(rest)
     if any(s.volume() < -least for s in shells):
-        raise InputError(
-            "a shell that looks inward: a cavity, or reversed faces", "shells that look outward",
-            advice="Remove inner surfaces: added mass belongs to the outer one.",
-        )  # fmt: skip
+        raise input_error("bodies.shell_looks_inward")
     alone = [p for s in without_overlap(shells) for p in solids.pieces(s)]
     shared = sum(s.volume() for s in shells) - sum(p.volume() for p in alone)
     unassigned = 0.0
@@ -419,9 +299,7 @@ def _convex(found: list[_Piece], likes: list[Likeness]) -> tuple[list[_Piece], l
             least = CHIPS * piece.solid.volume()
             parts = [p for p in convex_pieces(piece.solid) if p.volume() > least]
         except ImportError:
-            raise InputError(
-                "--split convex without the package vhacdx", "vhacdx", advice='Install "coeflab[convex]".'
-            ) from None
+            raise input_error("bodies.split_convex_without") from None
         missing_volume += piece.solid.volume() - sum(p.volume() for p in parts)
         words.append(
             f"what matches no form, {piece.solid.volume():.5g} m^3, cut into {len(parts)} nearly convex pieces"

@@ -17,6 +17,7 @@ from coeflab.core.axes import FRAME_WORDS, Axes, Datum, parse_axes
 from coeflab.core.errors import AxesError, InputError, UnitsError
 from coeflab.core.files import located, shipped
 from coeflab.core.provenance import InputFile, Source, sha256_of
+from coeflab.core.texts import input_error
 from coeflab.core.units import factor
 
 BODY, CAMPAIGN = "body.toml", "campaign.toml"
@@ -48,12 +49,7 @@ def mesh_body(
     path = path / BODY if path.is_dir() else path
     if path.suffix.lower() == ".toml":
         if unit or axes or repair or fill or sheets:
-            raise InputError(
-                "--unit, --axes, --repair, --fill or --sheets",
-                "a mesh file with them",
-                file=path,
-                advice="A body.toml says these itself.",
-            )
+            raise input_error("bodies.unit_axes_repair", path)
         return read_body(path)
     own_unit, own_axes = SELF_DESCRIBED.get(path.suffix.lower().lstrip("."), ("", ""))
     unit, axes = unit or own_unit, axes or own_axes
@@ -82,7 +78,7 @@ def subject(
     """
     body = mesh_body(name, unit, axes, repair, fill, sheets)
     middle = body.configurations[0].centre_of_buoyancy
-    bare = body.datum.id.startswith("origin of ") and not body.lengths
+    bare = body.datum.is_of_file and not body.lengths
     if not bare or middle is None:
         return body
     size = body.require_shape().length
@@ -152,7 +148,7 @@ def _bare(path: Path, unit: float, axes: Axes, repair: bool, fill: bool, sheets:
     return Body(
         name=path.stem,
         title=path.name,
-        datum=Datum(f"origin of {path.name}"),
+        datum=Datum.of_file(path.name),
         reference_point=np.zeros(3),
         lengths={},
         configurations=(computed(shape, found.statements),),

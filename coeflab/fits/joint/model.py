@@ -1,9 +1,4 @@
-"""Force laws of several components over several tables, fitted together where equations link them.
-
-Campaigns of a joint fit held against each other, one component at a time.
-
-What a joint fit says about its equations and about rows that it has not seen.
-"""
+"""Force laws of several components over several tables, fitted together where equations link them."""
 
 from __future__ import annotations
 
@@ -15,194 +10,19 @@ import numpy as np
 
 from coeflab.core.texts import input_error
 from coeflab.core.types import Array, dataclass
-from coeflab.core.wording import finite
-from coeflab.fits.joint.rows import Component, Constraint, constraint_of, linked
-from coeflab.fits.results.fit_result import CampaignShare, Pooling
-from coeflab.fits.results.fitted_model import (
-    ROUNDING,
-    UNLIKELY,
-    FittedModel,
-    OutOfSample,
-    chance,
-    errors_of,
-    in_words,
-)
+from coeflab.fits.joint.components import Component, Constraint, constraint_of, linked
+from coeflab.fits.joint.pooling import poolings
+from coeflab.fits.joint.unseen_rows import equations_in_words, unseen
+from coeflab.fits.results.fitted_model import FittedModel, in_words
+from coeflab.fits.results.lack_of_fit import ROUNDING
+from coeflab.fits.results.pooling import Pooling
 from coeflab.fits.rows.regression import model_of
 from coeflab.fits.rows.too_few import TooFewRowsError
-from coeflab.fits.statistics.groups import UNTOLD, poolability, predict_left_out, thirds
-from coeflab.fits.statistics.least_squares import Index
-from coeflab.fits.statistics.linear_model import LinearFit, fit_linear
+from coeflab.fits.statistics.linear_model import LinearFit
 from coeflab.fits.statistics.remainder import Block, judged, left_out
-from coeflab.fits.statistics.stacked import fit_stacked, freed, influence, part_of, scatter, spread_by_run, stack
+from coeflab.fits.statistics.stacked import fit_stacked, influence, part_of, spread_by_run, stack
 from coeflab.law.domain import Domain, Extrapolation
-from coeflab.law.terms import Equation
-
-EVERY_THIRD = "Every third point left out"
-
-
-def unseen(parts: Sequence[Component], constraint: Constraint | None) -> list[list[OutOfSample]]:
-    """Prediction of rows left out, per component: every third point, then each table where one campaign has several."""
-    runs, first = np.unique(np.concatenate([p.data.run for p in parts]), return_index=True)
-    variables = tuple(dict.fromkeys(v for p in parts for v in p.data.rows.x))
-    columns = {v: np.concatenate([p.data.rows.x.get(v, np.zeros(len(p.data.run))) for p in parts]) for v in variables}
-    tables = np.concatenate([p.data.table for p in parts])
-    row_run = np.searchsorted(runs, np.concatenate([p.data.run for p in parts]))
-    ways = [(EVERY_THIRD, thirds([columns[v][first] for v in variables])[row_run])]
-    if len(np.unique(tables)) > 1 and len(parts[0].data.campaigns) == 1:
-        ways.append(("Each table left out in turn", tables))
-    out: list[list[OutOfSample]] = [[] for _ in parts]
-    for how, fold in ways:
-        for found, p, guess in zip(out, parts, predicted(parts, constraint, fold), strict=True):
-            constant = not p.own and not any(t.term.factors for t in p.terms)
-            found.append(errors_of(how, p.data.rows.y, guess, constant=constant))
-    return out
-
-
-def predicted(
-    parts: Sequence[Component], constraint: Constraint | None, fold: Index, *, own: bool = True
-) -> list[Array]:
-    """Rows of every component predicted from those of other folds; without the campaign's own intercept if not ``own``."""
-    y = [p.data.rows.y for p in parts]
-    design, noise = stack([p.matrix for p in parts], y, [p.errors for p in parts])
-    asked = design.copy()
-    if not own:
-        for p, start in zip(parts, accumulate((p.width for p in parts), initial=0), strict=False):
-            asked[:, start + len(p.terms) : start + p.width] = 0.0
-    guess = predict_left_out(design, np.concatenate(y), fold, constraint, 1.0 / noise, asked)
-    return [guess[low:high] for low, high in pairwise(accumulate(map(len, y), initial=0))]
-
-
-def equations_in_words(
-    parts: Sequence[Component], equations: Sequence[Equation], constraint: Constraint, n_runs: int
-) -> list[list[str]]:
-    """Per component: whether the data stand the equations, how components are weighed, what comes from equations alone."""
-    found = freed(
-        [p.matrix for p in parts],
-        [p.data.rows.y for p in parts],
-        [p.data.run for p in parts],
-        constraint,
-        [p.errors for p in parts],
-        n_runs,
-    )
-    spoken, tested = [e.spoken for e in equations], int(np.isfinite(found.probability).sum())
-    statements = [f"Imposed exactly: {', '.join(spoken)}."]
-    rejected, how = found.together < UNLIKELY, " by t tests of the free fit (errors by run, CR2)"
-    how += f", p times {tested} for that many equations" if tested > 1 else ""
-    for text, p in zip(spoken, np.minimum(found.probability * tested, 1.0), strict=True):
-        if np.isfinite(p):
-            verb = "reject" if p < UNLIKELY else "do not contradict"
-            statements.append(f"The data {verb} {text} ({chance(p)}){how}.")
-            how = ""
-            rejected |= p < UNLIKELY
-    untold = [t for t, p in zip(spoken, found.probability, strict=True) if not np.isfinite(p)]
-    if untold and np.isfinite(found.together):
-        verb = "reject" if found.together < UNLIKELY else "do not contradict"
-        statements.append(f"The data {verb} {' with '.join(untold)} ({chance(found.together)}){how}.")
-    elif untold:
-        statements.append(
-            f"Not tested, since without the equations the rows do not determine a coefficient: {', '.join(untold)}."
-        )
-    if rejected:
-        statements.append("U95 does not include the error from a rejected equation.")
-    if len(parts) > 1:
-        sizes = [scatter(p.matrix, p.data.rows.y, p.errors) for p in parts]
-        listed = ", ".join(f"{p.name}' {s:.2g}" for p, s in zip(parts, sizes, strict=True))
-        low, high = int(np.argmin(sizes)), int(np.argmax(sizes))
-        statements.append(
-            f"Components are combined with weights 1 / scatter^2 of their own free residuals ({listed}; the size of the "
-            f"response where no residual is left): a row of {parts[low].name} counts as "
-            f"{(sizes[high] / sizes[low]) ** 2:.3g} rows of {parts[high].name}."
-        )
-    out, at = [], 0
-    for p in parts:
-        free = [s for s, is_open in zip(p.every_symbol, found.open[at : at + p.width], strict=True) if is_open]
-        at += p.width
-        idle = p.idle
-        own = [f"{s} comes from the equations alone: its motion does not occur in the rows of {p.name}." for s in idle]
-        if rest := [s for s in free if s not in idle]:
-            own.append(f"Without the equations the rows do not determine: {', '.join(rest)}.")
-        out.append([*statements, *own])
-    return out
-
-
-def poolings(
-    parts: Sequence[Component], constraint: Constraint, fits: Sequence[LinearFit], thirds: Sequence[OutOfSample]
-) -> list[Pooling]:
-    """What every campaign adds to each component, and the test of one law.
-
-    Parameters
-    ----------
-    parts : sequence of Component
-        Tied by ``constraint``.
-    constraint : Constraint
-    fits : sequence of LinearFit
-        Of every part, intercepts included.
-    thirds : sequence of OutOfSample
-        Prediction of every third point, a part each.
-    """
-    origin = np.concatenate([p.data.campaign for p in parts])
-    guesses = predicted(parts, constraint, origin, own=False)
-    return [_pooling(*each) for each in zip(parts, fits, guesses, thirds, strict=True)]
-
-
-def _pooling(part: Component, fit: LinearFit, guess: Array, third: OutOfSample) -> Pooling:
-    data, y = part.data, part.data.rows.y
-    alone = {k: _alone(part, k) for k in data.present}
-    shares = []
-    for at, k in enumerate(data.present):
-        rows, place = data.campaign == k, len(part.terms) + at
-        intercept = float(fit.coefficients[place]) if part.own else float("nan")
-        half = float(fit.half_width[place]) if part.own else float("nan")
-        noise = np.ones(1) if part.errors is None else part.errors[rows]
-        shares.append(
-            CampaignShare(
-                campaign=data.campaigns[k],
-                n_points=int(rows.sum()),
-                intercept=finite(intercept),
-                half_width=finite(half),
-                noise=float(np.sqrt(np.mean(noise**2))),
-                rms=float(np.sqrt(np.mean(fit.residuals[rows] ** 2))),
-                rms_alone=alone[k].rms,
-                left_out=_left_out(data.campaigns[k], y[rows], guess[rows], own=part.own),
-            )
-        )
-    if len(shares) == 1 or part.errors is None:
-        return Pooling(part.name, tuple(shares), third, UNTOLD)
-    apart = [np.where((data.campaign == k)[:, None], part.matrix, 0.0) for k in data.present]
-    test = poolability(part.matrix, np.column_stack(apart), y, part.errors)
-    return Pooling(part.name, tuple(shares), third, test, _values_alone(part, alone))
-
-
-def _alone(part: Component, campaign: int) -> LinearFit:
-    """The same terms fitted to one campaign."""
-    rows = part.data.campaign == campaign
-    errors = None if part.errors is None else part.errors[rows]
-    return fit_linear(part.matrix[rows], part.data.rows.y[rows], errors)
-
-
-def _left_out(campaign: str, y: Array, guess: Array, *, own: bool) -> OutOfSample:
-    """Rows of a campaign predicted from the others; its own force at rest is free where campaigns have one."""
-    known = np.isfinite(guess)
-    constant = float(np.mean(y[known] - guess[known])) if own and np.any(known) else 0.0
-    how = f"{campaign} left out" + (", but for one constant of its own" if own else "")
-    return errors_of(how, y, guess + constant)
-
-
-def _values_alone(
-    part: Component, alone: dict[int, LinearFit]
-) -> tuple[tuple[str, tuple[tuple[str, float, float], ...]], ...]:
-    """Coefficients that at least two campaigns determine by themselves, with half-widths."""
-    out = []
-    for i, symbol in enumerate(part.symbols):
-        values = tuple(
-            (part.data.campaigns[k], float(f.coefficients[i]), float(f.half_width[i]))
-            for k, f in alone.items()
-            if np.isfinite(f.coefficients[i])
-        )
-        if len(values) > 1:
-            out.append((symbol, values))
-    return tuple(out)
-
+from coeflab.law.named_terms import Equation
 
 NO_CAMPAIGN = "Each campaign left out in turn: needs two campaigns."
 

@@ -1,31 +1,21 @@
-"""Rows of several tables for one response, with the run that each comes from.
-
-Tables of several campaigns about one point, and what sets the campaigns apart.
-
-A force component of a joint fit, and the equations that tie components together.
-"""
+"""Rows of several tables for one response, with the run that each comes from."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import replace
-from itertools import accumulate
 
 import numpy as np
 from numpy.typing import NDArray
 
-from coeflab.core.axes import ANYWHERE
-from coeflab.core.errors import InputError, ScalingMismatchError, shown
-from coeflab.core.types import Array, dataclass
-from coeflab.fits.results.fitted_model import SetAside, joined
+from coeflab.core.errors import InputError
+from coeflab.core.types import dataclass
+from coeflab.fits.results.set_aside import SetAside, joined
 from coeflab.fits.rows.regression import Area, Rows, collect, response, variable
 from coeflab.fits.rows.too_few import TooFewRowsError
-from coeflab.fits.statistics.groups import noise_of_groups
 from coeflab.fits.statistics.least_squares import Index
-from coeflab.law.scaling import Scaling
 from coeflab.law.symbols import COMPONENTS
-from coeflab.law.terms import Equation, NamedTerm, design, read_term
-from coeflab.tables.force_table import AT_REST, ForceTable, counted_once
+from coeflab.tables.force_table import AT_REST, ForceTable
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -182,200 +172,3 @@ def _joined(parts: Sequence[Rows], tables: Sequence[ForceTable]) -> Rows:
         body=joint_name(t.body for t in tables),
         set_aside=joined([p.set_aside for p in parts if p.set_aside is not None]),
     )
-
-
-ALIKE = 0.02  # Reynolds numbers: temperatures of one tank within a degree, and rounding in reports
-ROUNDED = 1e-6  # lengths in feet that were converted with different digits
-
-
-def about_one_point(tables: Sequence[ForceTable]) -> tuple[ForceTable, ...]:
-    """All tables about the reference point of the first, every reading once.
-
-    Raises
-    ------
-    ScalingMismatchError
-        Reference points from different datums.
-    """
-    first = next((t for t in tables if t.datum != ANYWHERE), tables[0])
-    tables = [t.counted_from(first.datum, first.reference_point) for t in tables]
-    for t in tables:
-        if t.datum != first.datum:
-            raise ScalingMismatchError(
-                f"{first.campaign} measures points from {shown(first.datum.id)}, {t.campaign} from {shown(t.datum.id)}; state "
-                "the reference points of both from one datum."
-            )
-    return tuple(t.about(first.reference_point) for t in counted_once(tables))
-
-
-def one_length(tables: Sequence[ForceTable]) -> Scaling:
-    """The scaling that all tables share, to the rounding of a length in other units.
-
-    Raises
-    ------
-    ScalingMismatchError
-        Tables primed by different lengths.
-    """
-    first = tables[0]
-    for t in tables:
-        if abs(t.scaling.length / first.scaling.length - 1.0) > ROUNDED:
-            raise ScalingMismatchError(
-                f"{first.campaign} is primed by {first.scaling}, {t.campaign} by {t.scaling}; name one length for both "
-                "([scaling] in a plan, or --length and --length-name)."
-            )
-    return first.scaling
-
-
-def differences(tables: Sequence[ForceTable], length: float) -> tuple[str, ...]:
-    """What sets the campaigns of some tables apart, in words: body, Reynolds number, kind of source, point.
-
-    Parameters
-    ----------
-    tables : sequence of ForceTable
-        As read, about their own points.
-    length : float
-        m, of Reynolds numbers that follow from speed and viscosity.
-    """
-    first = {t.campaign: t for t in reversed(tables)}
-    by = {c: first[c] for c in dict.fromkeys(t.campaign for t in tables)}
-    if len(by) == 1:
-        return ()
-    out = []
-    if len({t.body for t in by.values()}) > 1:
-        out.append(f"Different bodies: {_each(by, lambda t: t.body)}.")
-    rows = {c: t.reynolds(length) for c, t in by.items()}
-    numbers = {c: None if at is None else float(np.median(at)) for c, at in rows.items()}
-    known = [n for n in numbers.values() if n is not None]
-    if len(known) < len(by):
-        out.append(f"Reynolds numbers unknown: {', '.join(c for c, n in numbers.items() if n is None)}.")
-    if known and max(known) > (1.0 + ALIKE) * min(known):
-        out.append(f"Different Reynolds numbers: {', '.join(f'{n:.3g} ({c})' for c, n in numbers.items() if n)}.")
-    if len({t.source.kind for t in by.values()}) > 1:
-        out.append(f"Different kinds of source: {_each(by, lambda t: t.source.kind)}.")
-    point = tables[0].reference_point
-    moved = [c for c, t in by.items() if not np.allclose(t.reference_point, point, rtol=0.0, atol=1e-9)]
-    if moved:
-        place = ", ".join(f"{x:.6g}" for x in point)
-        out.append(f"Moved to the point of {tables[0].campaign}, ({place}) m: {', '.join(moved)}.")
-    return tuple(out)
-
-
-def _each(by: dict[str, ForceTable], what: Callable[[ForceTable], str]) -> str:
-    return ", ".join(f"{what(t)} ({c})" for c, t in by.items())
-
-
-Constraint = tuple[Array, Array]
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class Component:
-    """One force component of a joint fit.
-
-    Attributes
-    ----------
-    name : str
-    terms : tuple of NamedTerm
-        Common to all campaigns.
-    data : JointRows
-    errors : (n,) array or None
-        Standard deviations that weigh the rows.
-    own : bool
-        Every campaign has an intercept of its own, in columns behind those of the terms.
-    lines : bool
-        A slope without another power of its variable may lack x|x|, whatever the residuals show: nobody chose the form.
-    """
-
-    name: str
-    terms: tuple[NamedTerm, ...]
-    data: JointRows
-    errors: Array | None = None
-    own: bool = False
-    lines: bool = False
-
-    @property
-    def common(self) -> Array:
-        """Design of the terms, shape (n, p)."""
-        return design(tuple(t.term for t in self.terms), self.data.rows.x)
-
-    @property
-    def intercepts(self) -> Array:
-        """Which campaign every row is of, as columns of 0 and 1, shape (n, campaigns); none where they are shared."""
-        present = np.array(self.data.present if self.own else (), dtype=np.int64)
-        return np.asarray(self.data.campaign[:, None] == present, dtype=np.float64)
-
-    @property
-    def matrix(self) -> Array:
-        """Design, shape (n, p + intercepts)."""
-        return np.column_stack([self.common, self.intercepts])
-
-    @property
-    def width(self) -> int:
-        """Columns of the design."""
-        return len(self.terms) + (len(self.data.present) if self.own else 0)
-
-    @property
-    def symbols(self) -> tuple[str, ...]:
-        """Names of the common coefficients."""
-        return tuple(t.symbol for t in self.terms)
-
-    @property
-    def idle(self) -> tuple[str, ...]:
-        """Common coefficients whose motion occurs in no row."""
-        return tuple(s for s, column in zip(self.symbols, self.common.T, strict=True) if not np.any(column))
-
-    @property
-    def every_symbol(self) -> tuple[str, ...]:
-        """Names of all columns."""
-        campaigns = [self.data.campaigns[k] for k in self.data.present] if self.own else []
-        return (*self.symbols, *(f"{self.name}0 of {c}" for c in campaigns))
-
-    def weighed(self, *, stated: bool) -> Component:
-        """With the weights of the rows: several campaigns by the scatter of each about its own law.
-
-        Parameters
-        ----------
-        stated : bool
-            Weigh the rows of a campaign by their standard errors.
-        """
-        errors = self.data.rows.errors if stated else None
-        if len(self.data.present) > 1:
-            errors = noise_of_groups(self.matrix, self.data.rows.y, self.data.campaign, errors)
-        return replace(self, errors=errors)
-
-
-def constraint_of(equations: Sequence[Equation], parts: Sequence[Component], place: str) -> Constraint:
-    """C and d of C b = d over all columns of ``parts``.
-
-    Raises
-    ------
-    InputError
-        An equation names a coefficient that the model does not have.
-    """
-    starts = accumulate((p.width for p in parts), initial=0)
-    index = {t.key: start + i for p, start in zip(parts, starts, strict=False) for i, t in enumerate(p.terms)}
-    matrix = np.zeros((len(equations), sum(p.width for p in parts)))
-    for row, equation in enumerate(equations):
-        for symbol, weight in equation.weights:
-            named = read_term(symbol, place)
-            if named.key not in index:
-                names = ", ".join(s for p in parts for s in p.symbols)
-                apart = not named.term.factors and any(p.own and p.name == named.component for p in parts)
-                raise InputError(f"{shown(symbol)} in {shown(equation)}", f"coefficients of the model: {names}",
-                                 column=place, advice=f"Add {symbol} to the terms"
-                                 + ("; one value then serves all campaigns." if apart else "."))  # fmt: skip
-            matrix[row, index[named.key]] += weight
-    return matrix, np.array([e.right for e in equations])
-
-
-def linked(components: Sequence[str], equations: Sequence[Equation]) -> list[tuple[str, ...]]:
-    """Components that equations tie together, in the order given."""
-    group = {c: {c} for c in components}
-    for equation in equations:
-        tied = {symbol[0] for symbol, _ in equation.weights}
-        merged = set().union(*(group.get(c, set()) for c in tied))
-        for c in merged:
-            group[c] = merged
-    out: list[tuple[str, ...]] = []
-    for c in components:
-        if not any(c in g for g in out):
-            out.append(tuple(k for k in components if k in group[c]))
-    return out

@@ -1,18 +1,10 @@
-"""A fitted force law or table: terms, coefficients with covariance, domain, diagnostics.
-
-Rows that a source prints and no fit uses: rejected or doubtful, kept for pictures.
-
-What the form of a fitted model misses, in words: residuals that are not random, and the next term in a motion.
-
-What a model is worth on rows that it has not seen, as a share of the response's range.
-"""
+"""A fitted force law or table: terms, coefficients with covariance, domain, diagnostics."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import field, replace
+from dataclasses import field
 from itertools import combinations
-from math import isnan
 from typing import Any
 
 import numpy as np
@@ -21,62 +13,15 @@ from numpy.typing import NDArray
 from coeflab.core.cards import html_by
 from coeflab.core.texts import text_of
 from coeflab.core.types import Array, dataclass, in_angles, locking
-from coeflab.fits.statistics.groups import predict_left_out, thirds
-from coeflab.fits.statistics.linear_model import LinearFit, fit_linear, t_probability
+from coeflab.fits.results.set_aside import SetAside
+from coeflab.fits.statistics.linear_model import LinearFit
 from coeflab.fits.statistics.remainder import Remainder
 from coeflab.law.coefficient import Coefficient, Parts, Status
 from coeflab.law.domain import Domain
-from coeflab.law.symbols import ANGULAR, MOTIONS
-from coeflab.law.terms import Term, canonical, design
-from coeflab.tables.force_table import AT_REST, SAME_SIZE, ForceTable
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-@locking("x y")
-class SetAside:
-    """Points beside a fit.
-
-    Attributes
-    ----------
-    x : mapping of variable to (n,) array
-        As the rows of the fit.
-    y : (n,) array
-    labels : tuple of str
-    """
-
-    x: Mapping[str, Array]
-    y: Array
-    labels: tuple[str, ...]
-
-    def only(self, keep: NDArray[np.bool_]) -> SetAside:
-        """Some of the points."""
-        labels = tuple(t for t, k in zip(self.labels, keep, strict=True) if k)
-        return SetAside({v: x[keep] for v, x in self.x.items()}, self.y[keep], labels)
-
-
-def joined(parts: list[SetAside]) -> SetAside | None:
-    """The points of several tables over the same variables; None where there are none."""
-    found = [p for p in parts if len(p.y)]
-    if not found:
-        return None
-    return SetAside(
-        {v: np.concatenate([p.x[v] for p in found]) for v in found[0].x},
-        np.concatenate([p.y for p in found]),
-        tuple(t for p in found for t in p.labels),
-    )
-
-
-def readmitted(table: ForceTable) -> ForceTable:
-    """The table with every printed cell in use that its file or its declaration turns away.
-
-    Rows that a fit leaves out of its own accord, as another variable moves in them, have no line of a file and stay out.
-    """
-    usable = {c: np.isfinite(values) for c, values in table.forces.items()}
-    for e in table.exclusions:
-        if not e.line:
-            for component in [e.component] if e.component else usable:
-                usable[component][e.row] = False
-    return replace(table, usable=usable)
+from coeflab.law.named_terms import canonical
+from coeflab.law.symbols import ANGULAR
+from coeflab.law.terms import Term, design
+from coeflab.tables.force_table import AT_REST, SAME_SIZE
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -323,188 +268,3 @@ def in_words(fit: LinearFit, symbols: tuple[str, ...]) -> tuple[str, ...]:
             f"Only {max(fit.digits, 0):.0f} digits of the coefficients are reliable: the terms are nearly dependent."
         )
     return tuple(out)
-
-
-UNLIKELY = 0.01  # a false alarm in one of a hundred sound fits
-ROUNDING = 1e-10  # residuals of an exact form, over the largest value
-
-
-def chance(probability: float) -> str:
-    """A probability as a reader wants it: ``p = 0.042``, ``p < 0.001``."""
-    return "p < 0.001" if probability < 1e-3 else f"p = {probability:.2g}"
-
-
-def residuals_in_words(model: FittedModel, way_out: str = "") -> tuple[str, ...]:
-    """What the residuals say against the form: a remainder that they show, else signs that are not random.
-
-    Signs are taken in the order of the rows (Wald & Wolfowitz 1940).
-
-    Parameters
-    ----------
-    model : FittedModel
-    way_out : str
-        A sentence on what to do about a form that misses something.
-
-    Returns
-    -------
-    tuple of str
-        Empty where there is probably no remainder and the runs test is not below 0.01, or where the residuals are
-        rounding.
-    """
-    fit = model.fit
-    if model.remainder is not None and model.remainder.likeliest:
-        return (f"{_remainder_in_words(model, model.remainder)} {way_out}".rstrip(),)
-    exact = fit.rms <= ROUNDING * float(np.max(np.abs(model.y), initial=0.0))
-    if exact or not fit.runs_probability < UNLIKELY:
-        return ()
-    signs = fit.residuals[fit.residuals != 0.0] > 0.0
-    up = int(signs.sum())
-    expected = 1.0 + 2.0 * up * (len(signs) - up) / len(signs)
-    found = f"The residuals are not random (runs test, {chance(fit.runs_probability)})"
-    if 1 + int(np.count_nonzero(signs[1:] != signs[:-1])) > expected:
-        return (f"{found}: they change sign more often than by chance, and the intervals cannot be trusted.",)
-    words = f"{found}: the form misses something, and the intervals cannot be trusted."
-    return (f"{words} {way_out}".rstrip(),)
-
-
-def _remainder_in_words(model: FittedModel, found: Remainder) -> str:
-    right = "below 0.001" if found.none < 1e-3 else f"{found.none:.2g}"
-    held = next((t for t in model.terms if found.likeliest == f"a term {t}"), None)
-    likeliest = found.likeliest if held is None else f"a coefficient of {held} that no equation holds"
-    words = f"The residuals are not random: the form misses something, most likely {likeliest}; probability that it misses nothing: {right}."
-    without = model.rejected
-    if not without:
-        return f"{words} U95 includes what that may change."
-    have = "has" if len(without) == 1 else "have"
-    return f"{words} It is rejected for {', '.join(without)}, which {have} no U95; that of the others includes what it may change."
-
-
-def _own_powers(model: FittedModel, variable: str) -> list[tuple[int, bool]]:
-    """Power and oddness of the terms in one variable alone."""
-    keys = [canonical(t) for t in model.terms]
-    return [(k[0][1], k[0][2]) for k in keys if len(k) == 1 and k[0][0] == variable]
-
-
-def _next(model: FittedModel, variable: str) -> Term | None:
-    """x|x| after a line in x; x^3 after x|x| where the residuals are not random; None otherwise."""
-    odd = {n for n, is_odd in _own_powers(model, variable) if is_odd}
-    if odd == {1}:
-        return Term(((variable, 1, False), (variable, 1, True)))
-    if odd == {1, 2} and residuals_in_words(model):
-        return Term(((variable, 3, False),))
-    return None
-
-
-def next_terms_in_words(
-    model: FittedModel, errors: Array | None, asked: str, set_aside: Array | None = None
-) -> tuple[str, ...]:
-    """Curvature in a motion that the rows show and the terms lack.
-
-    After a line in a motion the next term is x|x|, after x|x| it is x^3 (the latter where the residuals are not random).
-    The t test of its coefficient stands unequal noise (HC2, Bell & McCaffrey 2002).
-
-    Parameters
-    ----------
-    model : FittedModel
-        Over SNAME motions, its coefficients free.
-    errors : (n,) array or None
-        Standard errors that weighed the rows.
-    asked : str
-        Set of terms that was asked for, as advice needs it; empty for none.
-    set_aside : (n, k) array, optional
-        Columns that were fitted beside the terms.
-
-    Returns
-    -------
-    tuple of str
-        One sentence a term below 0.01, with what it does to the slope.
-    """
-    matrix, out = design(model.terms, model.x), []
-    matrix = matrix if set_aside is None else np.column_stack([matrix, set_aside])
-    lines = {canonical(t): s for t, s in zip(model.terms, model.symbols, strict=True)}
-    if model.fit.rms <= ROUNDING * float(np.max(np.abs(model.y))) or len(model.y) <= matrix.shape[1] + 1:
-        return ()
-    for variable in (v for v in model.x if v in MOTIONS):
-        term, slope = _next(model, variable), lines.get(((variable, 1, True),), "")
-        if term is None or not np.isfinite(model.named(slope)[0]):
-            continue
-        wider = fit_linear(np.column_stack([matrix, term.evaluate(model.x)]), model.y, errors)
-        error = float(np.sqrt(wider.covariance[-1, -1]))
-        value, moved = float(wider.coefficients[-1]), float(wider.coefficients[model.symbols.index(slope)])
-        if not np.isfinite([value, moved, wider.half_width[-1]]).all() or error == 0.0:
-            continue
-        probability = float(t_probability(value / error, float(wider.freedom[-1])))
-        if probability >= UNLIKELY:
-            continue
-        name = model.response + term.suffix
-        with_set = f" beside set = {asked}" if asked else ""
-        out.append(
-            f"The terms miss curvature in {variable}: with {name} ({chance(probability)}) {slope} goes from "
-            f"{model.named(slope)[0]:.3g} to {moved:.3g}. Add {name} to terms{with_set}."
-        )
-    return tuple(out)
-
-
-RANGE = "the response's range"
-
-
-@dataclass(frozen=True, slots=True)
-class OutOfSample:
-    """Prediction errors of left-out rows.
-
-    Attributes
-    ----------
-    how : str
-        Which rows are left out.
-    rms, largest : float
-        Share of the response's range; NaN if no row could be predicted.
-    predicted, rows : int
-        Rows that the others determine, and all rows.
-    of : str
-        What the errors are shares of.
-    """
-
-    how: str
-    rms: float
-    largest: float
-    predicted: int
-    rows: int
-    of: str = RANGE
-
-    @property
-    def is_known(self) -> bool:
-        """Whether the others determine at least half of the rows, so that an error can be given."""
-        return 2 * self.predicted >= max(self.rows, 1) and not isnan(self.rms)
-
-    def __str__(self) -> str:
-        if not self.predicted:
-            return f"{self.how}: the remaining rows do not determine the model, so nothing can be predicted."
-        if isnan(self.rms):
-            return f"{self.how}: the left-out rows do not vary, so no error is given as a share of their range."
-        missing = self.rows - self.predicted
-        if not self.is_known:
-            return text_of("fits.too_few_rows_left", how=self.how, predicted=self.predicted, rows=self.rows)
-        rest = f"; {missing} of {self.rows} rows are not determined by the others" if missing else ""
-        return (
-            f"{self.how}: the left-out rows are predicted to {100 * self.rms:.2f} % rms, {100 * self.largest:.2f} % at "
-            f"most, of {self.of}{rest}."
-        )
-
-
-def errors_of(how: str, response: Array, predicted: Array, *, constant: bool = False) -> OutOfSample:
-    """Compare predictions, NaN where there is none, with what was measured; of a constant as shares of its mean."""
-    known = np.isfinite(predicted)
-    size = abs(float(np.mean(response))) if constant else float(np.ptp(response))
-    size = size or float("nan")
-    error = np.abs(predicted[known] - response[known]) / size
-    rms = float(np.sqrt(np.mean(error**2))) if error.size else float("nan")
-    of = "the mean" if constant else RANGE
-    largest = float(error.max()) if error.size else float("nan")
-    return OutOfSample(how, rms, largest, int(known.sum()), len(response), of)
-
-
-def every_third_point(model: FittedModel) -> OutOfSample:
-    """Leave every third point out, each point once: rows sorted by the motion variables, ends included."""
-    fold = thirds(list(model.x.values()))
-    predicted = predict_left_out(design(model.terms, model.x), model.y, fold)
-    return errors_of("Every third point left out", model.y, predicted, constant=model.is_constant)

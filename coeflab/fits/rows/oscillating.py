@@ -15,7 +15,7 @@ from coeflab.core.errors import InputError
 from coeflab.core.types import Array
 from coeflab.fits.results.oscillation import OscillatedForce
 from coeflab.fits.statistics import harmonics
-from coeflab.fits.statistics.linear_model import t_factor
+from coeflab.fits.statistics.robust_errors import t_factor
 from coeflab.law.rigid_body import parallel_axis, rigid_body_force, rigid_body_inertia
 from coeflab.law.scaling import Scaling
 from coeflab.law.symbols import COMPONENTS, MOTIONS

@@ -10,14 +10,9 @@ from numpy.typing import NDArray
 from coeflab.core.errors import InputError, shown
 from coeflab.core.texts import input_error
 from coeflab.core.types import Array, dataclass
-from coeflab.fits.results.fitted_model import (
-    ROUNDING,
-    FittedModel,
-    SetAside,
-    in_words,
-    joined,
-    readmitted,
-)
+from coeflab.fits.results.fitted_model import FittedModel, in_words
+from coeflab.fits.results.lack_of_fit import ROUNDING
+from coeflab.fits.results.set_aside import SetAside, joined, readmitted
 from coeflab.fits.rows.too_few import TooFewRowsError
 from coeflab.fits.statistics.linear_model import LinearFit, fit_linear
 from coeflab.fits.statistics.remainder import Block, Remainder, judged, left_out

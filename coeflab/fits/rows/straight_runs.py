@@ -9,7 +9,8 @@ import numpy as np
 
 from coeflab.core.types import Array
 from coeflab.fits.results.straight_runs import SYMBOL, StraightRuns
-from coeflab.fits.statistics.linear_model import fit_linear, t_probability
+from coeflab.fits.statistics.linear_model import fit_linear
+from coeflab.fits.statistics.robust_errors import t_probability
 from coeflab.law.coefficient import Coefficient, Parts, Status
 from coeflab.tables.force_table import FEWEST_SPEEDS, ForceTable
 

@@ -18,7 +18,7 @@ from coeflab.core.types import Array
 from coeflab.fits.statistics.data_gate import ROUNDING, Gate
 
 LEVEL = 0.01  # chance of a clean sweep to have any pair named, over all pairs
-FEWEST = 5
+FEWEST = 5  # rows of a sweep: fewer leave a curve no row to spare for judging the pair
 
 
 class Exchange(NamedTuple):

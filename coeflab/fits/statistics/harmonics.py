@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from scipy.special import fdtrc
 
 from coeflab.core.types import Array, dataclass
-from coeflab.fits.statistics.linear_model import t_factor, t_probability
+from coeflab.fits.statistics.robust_errors import t_factor, t_probability
 
 Phasors = NDArray[np.complex128]
 QUADRATIC, CUBIC = 8.0 / (3.0 * np.pi), 0.75

@@ -127,12 +127,6 @@ def solve(f: Factorised, response: Array) -> tuple[Array, Array]:
     return coefficients, residuals
 
 
-def classical_variance(f: Factorised, residuals: Array) -> Array:
-    """Variances of the coefficients under equal, independent errors, shape (p,) or (p, m)."""
-    variance = np.sum(residuals**2, axis=0) / max(f.freedom, 1)
-    return np.asarray(np.multiply.outer(np.sum(f.estimator**2, axis=1), variance))
-
-
 def aicc(f: Factorised, residuals: Array) -> Array:
     """Akaike's criterion with the small-sample correction of Hurvich & Tsai (1989), for normal errors.
 

@@ -1,90 +1,18 @@
 """A linear model with everything an expert asks of it: robust errors, influence, prediction, conditioning, open directions.
 
 PRESS: Allen (1974). Cook's distance: Cook (1977). Runs test: Wald & Wolfowitz (1940).
-
-Standard errors that stand unequal noise, with degrees of freedom that stand small samples.
-
-HC2 and HC3: MacKinnon & White (1985). Degrees of freedom: Bell & McCaffrey (2002) in the form of Imbens & Kolesar
-(2016), equation for one contrast under equal reference variances.
-
-Whether the terms that a smaller linear model leaves out matter: the F test of nested models.
-
-Fisher's ratio for equal, independent, normal noise; Draper & Smith, Applied Regression Analysis (1998), chapter 6.
-
-Coefficients of nearly dependent powers, with the powers themselves in extended precision.
-
-A design matrix in double precision holds rounded powers, and the coefficients of nearly dependent columns amplify that
-rounding by the condition number and, where the residuals are not small, by its square. Refinement of residuals and
-coefficients together (Bjorck, Numerical Methods for Least Squares Problems, 1996, section 2.9.3) gets back what the
-platform's long double can carry, and his bound of the rounding error (section 1.4.5) says how much that is.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
-from scipy.special import fdtrc, ndtr, stdtr, stdtrit
+from scipy.special import ndtr
 
 from coeflab.core.types import Array, dataclass
 from coeflab.fits.statistics.least_squares import Factorised, aicc, factorise, solve
-from coeflab.law.terms import Term, design
-
-FULL_LEVERAGE = 1.0 - 1e-9
-EXACT = 1e-12  # of the response: residuals of arithmetic
-SILENT = 1e-6  # of the pooled scatter: less is no noise but rows that repeat each other to the last digit, and no U95
-CONSTANT = 1e-9  # share of a constant that the columns may leave over
-
-
-def hangs_on_one_point(f: Factorised) -> NDArray[np.bool_]:
-    """Coefficients that a point of leverage 1 moves, boolean (p,): no residual shows that point's noise."""
-    squares = f.estimator**2
-    alone = squares[:, f.leverage >= FULL_LEVERAGE].sum(axis=1)
-    return np.asarray(alone > 1e-18 * squares.sum(axis=1))
-
-
-def _inflated(f: Factorised, residuals: Array, power: int) -> Array:
-    """Squared residuals over (1 - h)^power; a point of leverage 1 has no residual and adds nothing."""
-    room = np.where(f.leverage < FULL_LEVERAGE, 1.0 - f.leverage, np.inf) ** power
-    return np.asarray(residuals**2 / (room if residuals.ndim == 1 else room[:, None]))
-
-
-def hc_variance(f: Factorised, residuals: Array, kind: int) -> Array:
-    """HC2 (``kind=2``) or HC3 (``kind=3``) variances of the coefficients, shape (p,) or (p, m).
-
-    NaN for a coefficient that a point of leverage 1 moves.
-    """
-    variance = np.asarray(f.estimator**2 @ _inflated(f, residuals, kind - 1))
-    variance[hangs_on_one_point(f)] = np.nan
-    return variance
-
-
-def bell_mccaffrey(f: Factorised) -> Array:
-    """Degrees of freedom of the HC2 variance of every coefficient, shape (p,).
-
-    Satterthwaite's match of the first two moments; computed in O(n p^2) without the n x n residual maker. Zero for a
-    coefficient that a point of leverage 1 moves.
-    """
-    room = np.where(f.leverage < FULL_LEVERAGE, 1.0 - f.leverage, np.inf)
-    weights = f.estimator**2 / room
-    first = np.sum(weights * np.where(np.isfinite(room), room, 0.0), axis=1)
-    gram = np.einsum("pn,ni,nj->pij", weights, f.basis, f.basis)
-    second = weights**2 @ (1.0 - 2.0 * f.leverage) + np.sum(gram**2, axis=(1, 2))
-    known = (second > 0) & ~hangs_on_one_point(f)
-    return np.asarray(np.where(known, first**2 / np.where(known, second, 1.0), 0.0))
-
-
-def t_factor(freedom: Array | float, level: float = 0.95) -> Array:
-    """Two-sided Student factor; NaN where the degrees of freedom vanish."""
-    return np.asarray(stdtrit(freedom, 0.5 + 0.5 * level))
-
-
-def t_probability(ratio: Array | float, freedom: Array | float) -> Array:
-    """Two-sided probability of a larger |t| by chance."""
-    return np.asarray(2.0 * stdtr(freedom, -np.abs(ratio)))
-
+from coeflab.fits.statistics.robust_errors import CONSTANT, EXACT, FULL_LEVERAGE, SILENT, bell_mccaffrey, t_factor
 
 DOUBLE_DIGITS = 15.5
 
@@ -280,105 +208,3 @@ def _freedom(f: Factorised, free: Array, constrained: bool) -> Array:
     if not constrained:
         return bell_mccaffrey(f)
     return bell_mccaffrey(replace(f, back=free @ f.back))
-
-
-@dataclass(frozen=True, slots=True)
-class NestedTest:
-    """Fisher's ratio.
-
-    Attributes
-    ----------
-    ratio : float
-        NaN where it cannot be computed.
-    between, within : int
-        Degrees of freedom of numerator and denominator.
-    probability : float
-        Of so large a ratio by noise alone; NaN where it cannot be computed.
-    """
-
-    ratio: float
-    between: int
-    within: int
-    probability: float
-
-
-def nested_test(small: float, small_rank: int, full: float, full_rank: int, n: int) -> NestedTest:
-    """Compare two nested models by their weighted sums of squared residuals.
-
-    Parameters
-    ----------
-    small, full : float
-        Sums of squares of the smaller and of the full model.
-    small_rank, full_rank : int
-    n : int
-        Rows.
-    """
-    between, within = full_rank - small_rank, n - full_rank
-    if between <= 0 or within <= 0 or full <= 0.0:
-        return NestedTest(float("nan"), between, within, float("nan"))
-    ratio = max(small - full, 0.0) / between / (full / within)
-    return NestedTest(float(ratio), between, within, float(fdtrc(between, within, ratio)))
-
-
-WELL_CONDITIONED = 1e2
-STEPS = 40
-MOST_DIGITS = 15.0
-
-
-def sharpened(
-    fit: LinearFit, terms: tuple[Term, ...], columns: Mapping[str, Array], response: Array, errors: Array | None
-) -> LinearFit:
-    """The fit with refined coefficients and residuals, and with the digits that can be vouched for.
-
-    Parameters
-    ----------
-    fit : LinearFit
-        Of these terms, without a constraint.
-    terms : tuple of Term
-    columns : mapping of variable to (n,) array
-    response : (n,) array
-    errors : (n,) array or None
-        Standard errors that the fit was weighted by.
-
-    Notes
-    -----
-    Rank-deficient and well-conditioned fits are returned as they are.
-    """
-    if fit.rank < len(terms) or fit.condition < WELL_CONDITIONED:
-        return fit
-    f = factorise(design(terms, columns), None if errors is None else errors**-2.0)
-    root = f.root_weights.astype(np.longdouble)
-    exact = root[:, None] * np.column_stack([_power(t, columns, len(response)) for t in terms])
-    target = root * response.astype(np.longdouble)
-    best = fit.coefficients.astype(np.longdouble)
-    left = target - exact @ best
-    change = np.inf
-    for _ in range(STEPS):
-        off = (target - left - exact @ best).astype(np.float64)
-        slope = f.back.T @ (-(exact.T @ left)).astype(np.float64)
-        along = f.basis.T @ off
-        step = f.back @ (along - slope)
-        best = best + step
-        left = left + (off - f.basis @ (along - slope))
-        size = np.maximum(np.abs(best.astype(np.float64)), np.finfo(float).tiny)
-        before, change = change, float(np.max(np.abs(step) / size))
-        if change < 1e-17 or change > 0.5 * before:
-            break
-    matrix, remaining = np.abs(exact).astype(np.float64), np.abs(left).astype(np.float64)
-    through = np.abs(f.back @ f.back.T) @ (matrix.T @ remaining)
-    direct = np.abs(f.estimator) @ (np.abs(target).astype(np.float64) + matrix @ size)
-    rounding = float(np.finfo(np.longdouble).eps * np.max((through + direct) / size))
-    return replace(
-        fit,
-        coefficients=best.astype(np.float64),
-        residuals=(left / root).astype(np.float64),
-        digits=min(MOST_DIGITS, -float(np.log10(max(rounding, change, 1e-300)))),
-    )
-
-
-def _power(term: Term, columns: Mapping[str, Array], n: int) -> np.ndarray[tuple[int], np.dtype[np.longdouble]]:
-    out = np.ones(n, dtype=np.longdouble)
-    for variable, power, absolute in term.factors:
-        base = columns[variable].astype(np.longdouble)
-        out = out * (np.abs(base) if absolute else base) ** power
-    return out

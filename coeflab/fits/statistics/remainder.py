@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from scipy.special import stdtrit
 
 from coeflab.core.types import Array, dataclass, locked
-from coeflab.fits.statistics.groups import constrained_space, unit_columns
+from coeflab.fits.statistics.cross_validation import constrained_space, unit_columns
 from coeflab.fits.statistics.least_squares import BLOCK, factorise
 from coeflab.law.terms import Term
 

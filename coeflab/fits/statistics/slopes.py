@@ -16,9 +16,9 @@ from coeflab.core.types import Array, dataclass, remembered
 from coeflab.fits.statistics import origin_slope, slope_mixture
 from coeflab.fits.statistics.diagnostics import lack_of_fit, levels
 from coeflab.fits.statistics.least_squares import Factorised, Index, aicc, factorise, solve
-from coeflab.fits.statistics.linear_model import bell_mccaffrey, hc_variance, t_factor
 from coeflab.fits.statistics.many_rows import condensed_rows
 from coeflab.fits.statistics.origin_slope import OriginSlope
+from coeflab.fits.statistics.robust_errors import bell_mccaffrey, hc_variance, t_factor
 
 NEAR_REST = 0.02  # of the largest setting: nearer rows say nothing of a curvature
 NO_FLOOR = 1e-6  # relative standard error, so small that only the ratios of the rows count

@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from coeflab.core.types import Array, dataclass
-from coeflab.fits.statistics.groups import one_standard_error, shuffled_folds
+from coeflab.fits.statistics.cross_validation import one_standard_error, shuffled_folds
 from coeflab.law.terms import Term
 
 Support = frozenset[int]

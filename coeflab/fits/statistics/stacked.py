@@ -14,8 +14,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from coeflab.core.types import Array, dataclass
-from coeflab.fits.statistics import linear_model
-from coeflab.fits.statistics.groups import constrained_space
+from coeflab.fits.statistics import linear_model, robust_errors
+from coeflab.fits.statistics.cross_validation import constrained_space
 from coeflab.fits.statistics.least_squares import Factorised, Index, factorise
 
 OPEN = 1e-7
@@ -59,7 +59,7 @@ def spread_by_run(fit: linear_model.LinearFit, moves: Array, run: Index, n_runs:
         Run of every row.
     n_runs : int
     """
-    room = np.where(fit.leverage < linear_model.FULL_LEVERAGE, 1.0 - fit.leverage, np.inf)
+    room = np.where(fit.leverage < robust_errors.FULL_LEVERAGE, 1.0 - fit.leverage, np.inf)
     rows = moves * (fit.residuals / np.sqrt(room))
     out = np.zeros((len(moves), n_runs))
     np.add.at(out.T, run, rows.T)
@@ -86,7 +86,7 @@ def _by_run(f: Factorised, back: Array, residuals: Array, run: Index, n_runs: in
     for rows in np.split(order, np.flatnonzero(np.diff(run[order])) + 1):
         basis, g = f.basis[rows], int(run[rows[0]])
         room, turn = np.linalg.eigh(np.eye(len(rows)) - basis @ basis.T)
-        free = room > 1.0 - linear_model.FULL_LEVERAGE
+        free = room > 1.0 - robust_errors.FULL_LEVERAGE
         moves = back @ basis.T
         undetermined |= np.linalg.norm(moves @ turn[:, ~free], axis=1) > 1e-9 * np.linalg.norm(back, axis=1)
         adjusted = moves @ ((turn[:, free] / np.sqrt(room[free])) @ turn[:, free].T)
@@ -181,7 +181,7 @@ def _violated(f: Factorised, contrast: Array, right: Array, y: Array, run: Index
     spread, freedom = _by_run(f, contrast @ f.back, weighted - f.basis @ (f.basis.T @ weighted), run, n_runs)
     error, violation = np.linalg.norm(spread, axis=1), np.abs(contrast @ inner - right)
     rounding = ROUNDING * (np.abs(contrast) @ np.abs(inner) + np.abs(right))
-    by_chance = linear_model.t_probability(
+    by_chance = robust_errors.t_probability(
         violation / np.where(error > rounding, error, 1.0), np.maximum(freedom, 1e-3)
     )
     exact = np.where(violation <= 10.0 * rounding, 1.0, 0.0)
@@ -243,7 +243,7 @@ def fit_stacked(
         coefficients=np.where(known, coefficients, np.nan),
         covariance=covariance,
         freedom=freedom,
-        half_width=np.where(known, deviation * linear_model.t_factor(freedom), np.nan),
+        half_width=np.where(known, deviation * robust_errors.t_factor(freedom), np.nan),
         correlation=covariance / np.outer(unit, unit),
         open_directions=open_directions,
     )

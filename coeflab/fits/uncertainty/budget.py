@@ -2,31 +2,23 @@
 
 Parts are joined as a root sum of squares (JCGM 100:2008, ITTC 7.5-02-06-04) and taken as independent. An input error is
 one that all points of a campaign share.
-
-How the uncertain inputs of a campaign move the coefficients that its sweeps give.
-
-Every coefficient of a fit is one function of the declared inputs: the sweeps moved along and scaled with their curves
-held fixed, then moved by the error of the reference point. Linear sensitivities and Monte Carlo are of that same function.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from coeflab.core.cards import html_by
 from coeflab.core.finding import Finding, Severity
 from coeflab.core.table import plus_minus
 from coeflab.core.types import in_angles
 from coeflab.fits.uncertainty.grid_studies import gravest, grid_studies, variant_studies
-from coeflab.fits.uncertainty.propagation import STEP, normal_draws, summary_of
-from coeflab.law.coefficient import Parts, Status, transfer_matrix
-from coeflab.law.symbols import ANGULAR, MOMENTS, primed
-from coeflab.tables.campaign import NAMES
+from coeflab.law.coefficient import Parts, Status
+from coeflab.law.symbols import ANGULAR, primed
 from coeflab.tables.force_table import STUDIES
 
 if TYPE_CHECKING:
@@ -35,152 +27,9 @@ if TYPE_CHECKING:
     from coeflab.fits.uncertainty.grid_studies import GridStudy, VariantStudy
     from coeflab.fits.uncertainty.propagation import Propagated
     from coeflab.law.coefficient import Coefficient, CoefficientSet
-    from coeflab.tables.campaign import InputUncertainty
     from coeflab.tables.force_table import ForceTable
 
-ROUNDING = 1e-9
-NEWTON = 4
-
-
-@dataclass(frozen=True, slots=True)
-class InputPart:
-    """How one uncertain input moves a coefficient.
-
-    Attributes
-    ----------
-    name : str
-    half_width : float
-        Declared: rad, m or relative.
-    sensitivity : float
-        Derivative of the coefficient by the input.
-    """
-
-    name: str
-    half_width: float
-    sensitivity: float
-
-    @property
-    def linear(self) -> float:
-        """95 % half-width of the coefficient from this input."""
-        return abs(self.sensitivity) * self.half_width
-
-
-def acting(component: str, rate: bool, angle: bool | None = None) -> tuple[str, ...]:
-    """Inputs that can act on a coefficient of a component and whose effect its own rows show.
-
-    Parameters
-    ----------
-    component : str
-    rate : bool
-        It multiplies a rate.
-    angle : bool, optional
-        Its rows set an angle; by default those that are no rates do. An angle error of a rotating arm adds a drift whose
-        coupling with the rate a sweep of the rate alone does not know.
-    """
-    moment = component in MOMENTS
-    names = {
-        "angle": not rate if angle is None else angle, "rate": rate, "speed": True, "force": not moment,
-        "moment": moment, "reference_point": component in ("M", "N") or rate, "length": True, "density": True,
-    }  # fmt: skip
-    return tuple(n for n, acts in names.items() if acts)
-
-
-def perturbed(sweep: Sweep, names: Sequence[str]) -> Callable[[Array], Array]:
-    """The sweep's value as a function of input errors, the curve held fixed: (s, k) deviations -> (s,) values.
-
-    A deviation d says that the true angle is the set one plus d, that true speed, rate, length, density and forces are
-    1 + d times those in the table. An offset of the angle moves the origin along the recommended curve: a slope becomes
-    that of the curve there, a value at rest the curve's own, a curvature stays, as it feels it in second order only. The
-    reference point is left to `CoefficientSet.about`.
-    """
-    force_power = 3 if sweep.component in MOMENTS else 2
-    rate = sweep.variable in ANGULAR
-    value = sweep.value or 0.0
-    at, force, _ = sweep.curve
-    moved = np.zeros(len(at))
-    if not rate and sweep.target != "x2":
-        moved = np.gradient(force, at) if sweep.target == "x" else force
-        moved = moved - moved[len(at) // 2]
-
-    def values(deviations: Array) -> Array:
-        error = dict(zip(names, deviations.T, strict=True))
-        none = np.zeros(len(deviations))
-        one = {n: 1.0 + error.get(n, none) for n in NAMES}
-        x_factor = one["rate"] * one["length"] / one["speed"] if rate else none + 1.0
-        calibration = one["moment" if sweep.component in MOMENTS else "force"]
-        y_factor = calibration / (one["density"] * one["speed"] ** 2 * one["length"] ** force_power)
-        offset = none if rate else -error.get("angle", none)
-        if sweep.is_angle:
-            offset = np.sin(offset)
-        power = {"1": 0, "x": 1, "x2": 2}[sweep.target]
-        return np.asarray(y_factor / x_factor**power * (value + np.interp(offset, at, moved)))
-
-    return values
-
-
-def moved_by(
-    fit: FitResult, sweeps: tuple[Sweep, ...], declared: InputUncertainty, draws: int, seed: int
-) -> list[tuple[tuple[InputPart, ...], Propagated]]:
-    """Inputs of every sweep's coefficient, and all inputs together by both ways."""
-    names = declared.declared
-    half = np.array([getattr(declared, n) for n in names], dtype=float)
-    function, transferable = _of_inputs(fit, sweeps, names)
-    step = STEP * half
-    around = function(np.vstack([np.diag(step), -np.diag(step)]))
-    gradients = (around[: len(names)] - around[len(names) :]) / (2.0 * step[:, None])
-    nominal = function(np.zeros((1, len(names))))[0]
-    gradients = np.where(np.abs(gradients * half[:, None]) > ROUNDING * np.abs(nominal), gradients, 0.0)
-    covariance = np.diag((half / 2.0) ** 2)
-    sample = function(normal_draws(covariance, draws, seed))
-    out = []
-    for i, sweep in enumerate(sweeps):
-        acts = [
-            n for n in acting(sweep.component, sweep.variable in ANGULAR) if n != "reference_point" or transferable[i]
-        ]
-        inputs = tuple(
-            InputPart(n, float(half[k]), float(gradients[k, i]))
-            for k, n in enumerate(names)
-            if n in acts or gradients[k, i] != 0.0
-        )
-        out.append((inputs, summary_of(sample[:, i], float(nominal[i]), gradients[:, i], covariance, seed)))
-    return out
-
-
-def _of_inputs(
-    fit: FitResult, sweeps: tuple[Sweep, ...], names: tuple[str, ...]
-) -> tuple[Callable[[Array], Array], NDArray[np.bool_]]:
-    """All coefficients of a fit as functions of the inputs, (s, k) -> (s, m), and which of them a transfer determines.
-
-    The transfer is a quadratic of the shift, I + d A + d^2 B. A fit may have swept about another point than the one that
-    its coefficients are about; how far forward the coefficients' point lies is read off the coefficients.
-    """
-    symbols = tuple(s.symbol for s in sweeps)
-    length = fit.coefficients.scaling.length
-    at = [transfer_matrix(symbols, frozenset(symbols), np.array([d / length, 0.0, 0.0])) for d in (1.0, -1.0)]
-    known = at[0][1] & at[1][1]
-    first = np.where(known[:, None], 0.5 * (at[0][0] - at[1][0]), 0.0)
-    second = np.where(known[:, None], 0.5 * (at[0][0] + at[1][0]) - np.eye(len(symbols)), 0.0)
-    raw = np.array([s.value for s in sweeps], dtype=float)
-    final = np.array([fit.coefficients[s].value or 0.0 for s in symbols])
-    slopes, curves = first @ raw, second @ raw
-    k = int(np.argmax(np.abs(slopes)))
-    shift = 0.0
-    if slopes[k] != 0.0:
-        for _ in range(NEWTON):
-            shift += (final[k] - raw[k] - shift * slopes[k] - shift**2 * curves[k]) / (
-                slopes[k] + 2 * shift * curves[k]
-            )
-    each = [perturbed(s, names) for s in sweeps]
-
-    def values(deviations: Array) -> Array:
-        about = np.column_stack([f(deviations) for f in each])
-        dx = np.full((len(deviations), 1), shift)
-        if "reference_point" in names:
-            dx = dx + deviations[:, [names.index("reference_point")]]
-        return np.asarray(about + dx * (about @ first.T) + dx**2 * (about @ second.T))
-
-    return values, known
-
+from coeflab.fits.uncertainty.input_parts import InputPart, acting, moved_by
 
 DRAWS, SEED = 2000, 1  # 2.5 % tails of 50 draws each: half-widths to about 3 %
 TELLING = 0.05  # of the largest force: the relative grid error of a smaller one says nothing

@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from coeflab.core.types import dataclass
-from coeflab.fits.uncertainty.grid_convergence import cell_sizes, fitted_convergence, grid_convergence
+from coeflab.fits.uncertainty.grid_convergence import cell_sizes, grid_convergence
+from coeflab.fits.uncertainty.several_grids import fitted_convergence
 from coeflab.law.symbols import LINEAR, MOTIONS
 from coeflab.tables.force_table import STUDIES
 

@@ -6,8 +6,8 @@ Header, source, and a program that holds them against the file's own law. It com
 from __future__ import annotations
 
 from coeflab.formats.c_program.program import added_mass, force, render, steered_force
-from coeflab.formats.export import missing_mass, missing_water
 from coeflab.formats.exported_law import not_written, written_changes
+from coeflab.formats.missing_parts import missing_mass, missing_water
 from coeflab.vehicle.parameter_file import ParameterFile
 
 __all__ = ["added_mass", "changes", "force", "missing", "render", "steered_force"]

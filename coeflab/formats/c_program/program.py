@@ -16,9 +16,9 @@ from coeflab.core.texts import input_error
 from coeflab.core.types import Array
 from coeflab.core.wording import identifier
 from coeflab.formats.c_program.source import law_of, numbers, remark, source
-from coeflab.formats.export import covered_grid, rare_states
 from coeflab.formats.flat_law import FlatLaw, flat_law, free_motions
 from coeflab.formats.lacking_law import in_header
+from coeflab.formats.loss import covered_grid, rare_states
 from coeflab.law.rigid_body import axes_in_earth, rigid_body_force, weighed
 from coeflab.law.symbols import CONTROLS
 from coeflab.vehicle.expected_signs import control_signs

@@ -28,10 +28,10 @@ from coeflab.core.text.xml import sayable
 from coeflab.core.types import remembered
 from coeflab.core.wording import identifier, one_line
 from coeflab.formats.c_program import program as c
-from coeflab.formats.export import missing_water
 from coeflab.formats.exported_law import not_written, number, propulsion, spelt, written_changes
 from coeflab.formats.flat_law import FlatLaw, flat_law, free_motions
 from coeflab.formats.lacking_law import in_header
+from coeflab.formats.missing_parts import missing_water
 from coeflab.law.symbols import COMPONENTS, CONTROLS, MOTIONS
 from coeflab.vehicle.expected_signs import control_signs
 from coeflab.vehicle.parameter_file import ParameterFile

@@ -220,12 +220,8 @@ def read_tags(system: System) -> frozenset[str]:
     })  # fmt: skip
 
 
-def _numbers(parent: Element, tag: str, count: int, file: Path | str | None) -> tuple[float, ...]:
-    return numbers(parent.findtext(tag), (count,), tag, file)
-
-
 def _one(parent: Element | None, tag: str, file: Path | str | None) -> float | None:
-    return None if parent is None or parent.find(tag) is None else _numbers(parent, tag, 1, file)[0]
+    return None if parent is None or parent.find(tag) is None else numbers(parent.findtext(tag), (1,), tag, file)[0]
 
 
 def _tagged(plugin: Element, shape: tuple[int, ...], name: Callable[..., str], file: Path | str | None) -> Array:

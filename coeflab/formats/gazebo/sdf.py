@@ -15,12 +15,13 @@ import numpy as np
 from coeflab.core.text.xml import parse_xml, sayable, serialised
 from coeflab.core.types import Array
 from coeflab.core.wording import identifier, one_line
-from coeflab.formats.export import missing_mass, missing_water, unheld
 from coeflab.formats.exported_law import Afloat, afloat, exported_law, number
 from coeflab.formats.gazebo.assembly import LINK
 from coeflab.formats.gazebo.drive import drive, driven_force, fin_symbols, in_words, not_driven
 from coeflab.formats.gazebo.law import DENSITY, FLUID_TAGS, FORCES, LENGTH, RESISTANCE, SYSTEM, VELOCITIES, read_gz_link
 from coeflab.formats.lacking_law import in_header
+from coeflab.formats.loss import unheld
+from coeflab.formats.missing_parts import missing_mass, missing_water
 from coeflab.law.symbols import CONTROLS
 from coeflab.vehicle.inertia import central_inertia, water_inertia
 from coeflab.vehicle.parameter_file import ParameterFile

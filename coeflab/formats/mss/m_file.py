@@ -2,8 +2,6 @@
 
 Nothing is run: numbers, ``+ - * / ^`` and names assigned above are computed, all else is passed over. Primes are those of MSS
 VESSELS/npsauv.m, where r2 = rho*L^2/2 and so on tell that the derivatives are primed.
-
-Plain assignments of a MATLAB or Octave file: read as text, never run.
 """
 
 from __future__ import annotations
@@ -26,103 +24,20 @@ from coeflab.core.types import brief
 from coeflab.core.wording import one_line
 from coeflab.formats import NoDensityError
 from coeflab.formats.exported_law import sname
+from coeflab.formats.mss.assignments import (
+    CLOSING,
+    DRIVEN,
+    NAMED,
+    OPENING,
+    TABLED,
+    Assignment,
+    assignments,
+    own_part,
+    statements,
+)
 from coeflab.law.scaling import Conditions, Scaling
 from coeflab.law.symbols import COMPONENTS, LINEAR, MOMENTS, MOTIONS, derivative
 from coeflab.vehicle.imported_numbers import FEET_PER_SECOND, FOOT, SLUG, SLUGS
-
-_ASSIGNMENT = re.compile(r"([A-Za-z]\w*(?:\.[A-Za-z]\w*)*)\s*=(?!=)\s*(.*\S)", re.ASCII | re.DOTALL)
-_QUOTED = re.compile(r"'((?:[^']|'')*)'")
-_DOUBLE_QUOTED = re.compile(r'"(?:[^"\\]|\\.|"")*"')
-_NAMED = re.compile(r"[A-Za-z]\w*(?:\.[A-Za-z]\w*)*", re.ASCII)
-_OPENING, _CLOSING = "([{", ")]}"
-
-
-TABLED, DRIVEN = (
-    "\nfunction F = tabled(",
-    "\nfunction F = driven(",
-)  # where an export writes tables and thrusters as code
-
-
-def own_part(text: str) -> str:
-    """A function file without the functions of tables and thrusters that an export writes behind it."""
-    return text.partition(TABLED)[0].partition(DRIVEN)[0]
-
-
-@dataclass(frozen=True, slots=True)
-class Assignment:
-    """``target = expression``, with the line that it begins on; ``target`` may have dots."""
-
-    line: int
-    target: str
-    expression: str
-
-    @property
-    def quoted(self) -> str | None:
-        """The text of a quoted right-hand side; None for anything else."""
-        match = _QUOTED.fullmatch(self.expression)
-        return match[1].replace("''", "'") if match else None
-
-
-def assignments(text: str) -> tuple[Assignment, ...]:
-    """The plain assignments of a file, in order; whatever else it does is passed over.
-
-    Comments (``%``, ``#``, blocks of ``%{``) are dropped and lines that end in ``...`` joined.
-    """
-    out = []
-    for line, statement in _statements(text):
-        match = _ASSIGNMENT.fullmatch(statement)
-        if match:
-            out.append(Assignment(line, match[1], match[2]))
-    return tuple(out)
-
-
-def _statements(text: str) -> list[tuple[int, str]]:
-    out: list[tuple[int, str]] = []
-    held, begun, depth, block = "", 0, 0, 0
-    for number, raw in enumerate(text.splitlines(), 1):
-        if raw.strip() in ("%{", "#{"):
-            block += 1
-        elif block:
-            block -= raw.strip() in ("%}", "#}")
-        else:
-            pieces, depth, more = _pieces(raw, depth)
-            for i, piece in enumerate(pieces):
-                if i:
-                    out.append((begun, held.strip()))
-                    held = ""
-                begun = begun if held.strip() else number
-                held += piece
-            if more or depth:
-                held += " "
-            else:
-                out.append((begun, held.strip()))
-                held = ""
-    out.append((begun, held.strip()))
-    return [(line, s) for line, s in out if s]
-
-
-def _pieces(line: str, depth: int) -> tuple[list[str], int, bool]:
-    """A line cut at ``;`` and ``,`` outside brackets and quotes; the depth of brackets; whether it goes on."""
-    pieces: list[str] = []
-    begun, at = 0, 0
-    while at < len(line):
-        c = line[at]
-        if c in "%#":
-            return [*pieces, line[begun:at]], depth, False
-        if line.startswith("...", at):
-            return [*pieces, line[begun:at]], depth, True
-        opens = c == '"' or (c == "'" and (at == 0 or not (line[at - 1].isalnum() or line[at - 1] in "_)]}'.")))
-        if opens:
-            match = (_QUOTED if c == "'" else _DOUBLE_QUOTED).match(line, at)
-            at = match.end() if match else len(line)
-            continue
-        depth = max(0, depth + (c in _OPENING) - (c in _CLOSING))
-        if c in ";," and not depth:
-            pieces.append(line[begun:at])
-            begun = at + 1
-        at += 1
-    return [*pieces, line[begun:]], depth, False
-
 
 LENGTHS = ("L", "Lpp", "LBP", "LOA", "Loa", "L_auv", "length")
 SPHEROID_DENSITY = {
@@ -225,7 +140,7 @@ def read_m_file(path: Path) -> MFile:
             out.unread.setdefault(last, a.line)
             continue
         out.numbers.setdefault(last, value)
-        out.uses.setdefault(last, frozenset(n.rpartition(".")[2] for n in _NAMED.findall(a.expression)))
+        out.uses.setdefault(last, frozenset(n.rpartition(".")[2] for n in NAMED.findall(a.expression)))
         if symbol and group.rpartition(".")[2] != "ideal":
             before = out.derivatives.setdefault(symbol, (group.rpartition(".")[2], value))
             if before[1] != value:
@@ -252,7 +167,7 @@ def _three(expression: str, names: Mapping[str, float]) -> tuple[float, ...] | N
 def _spheroids(text: str, names: Mapping[str, float], out: MFile, path: Path) -> tuple[str, ...]:
     """Mass, inertia and added mass of the file's calls of MSS's spheroids, computed here: Fossen (2021), section 8.4.2; Imlay (1961)."""
     calls = []
-    for line, statement in _statements(text):
+    for line, statement in statements(text):
         match = _CALL.fullmatch(statement)
         if match is None:
             continue
@@ -291,7 +206,7 @@ def _spheroids(text: str, names: Mapping[str, float], out: MFile, path: Path) ->
             ):  # fmt: skip
                 out.derivatives.setdefault(symbol, ("", -number))
         calls.append(match[2])
-        out.uses[match[2]] = frozenset(n for x in arguments for n in _NAMED.findall(x))
+        out.uses[match[2]] = frozenset(n for x in arguments for n in NAMED.findall(x))
     return tuple(dict.fromkeys(calls))
 
 
@@ -299,7 +214,7 @@ def _arguments(text: str) -> list[str]:
     """Arguments of a call, apart at commas outside of brackets."""
     out, depth = [""], 0
     for c in text:
-        depth += (c in _OPENING) - (c in _CLOSING)
+        depth += (c in OPENING) - (c in CLOSING)
         if c == "," and not depth:
             out.append("")
         else:

@@ -12,11 +12,10 @@ from coeflab.core.axes import Datum
 from coeflab.core.finding import Finding, Severity
 from coeflab.core.limits import JSON_BYTES
 from coeflab.core.provenance import InputFile, sha256_of
-from coeflab.core.table import Check
+from coeflab.core.table import Check, as_check
 from coeflab.core.text.toml import read_text
 from coeflab.core.texts import input_error
 from coeflab.core.units import STANDARD_GRAVITY
-from coeflab.formats.imported_file import MODEL_ORIGIN, Law, Stated, imported_file, matrix_doubts
 from coeflab.formats.left_out import left_out
 from coeflab.formats.mss.m_file import (
     DENSITIES,
@@ -31,6 +30,8 @@ from coeflab.formats.mss.m_file import (
     is_derivative,
     read_m_file,
 )
+from coeflab.formats.stated_coefficients import matrix_doubts
+from coeflab.formats.stated_file import MODEL_ORIGIN, Law, Stated, stated_file
 from coeflab.law.added_mass import AddedMass, potential_part
 from coeflab.law.rigid_body import MassProperties, ideal_quadratics, inertia_doubt, parallel_axis
 from coeflab.law.scaling import Conditions, Scaling
@@ -77,7 +78,7 @@ def read(path: Path, density: float | None = None) -> ParameterFile:
     found = read_m_file(path)
     source = InputFile(path.name, sha256_of(path))
     stated = _own(found, path) if "coeflab" in found.numbers else _foreign(found, path, density)
-    return imported_file(stated, [source], citations)
+    return stated_file(stated, [source], citations)
 
 
 def examine(path: Path) -> tuple[Check, ...]:
@@ -100,8 +101,7 @@ def _units(found: MFile, values: MValues) -> list[Check]:
     mass, forces = found.named(*MASSES), found.named("W")
     if rho := found.named(*DENSITIES):
         out.append(
-            Check("mss", f"density {rho[0]}", Severity.NOTE, f"{rho[1]:g}", f"{SLUGS[0]:g} to {SLUGS[1]:g} slug/ft^3",
-                  "The file is in slug, foot and pound; everything is converted to SI.")
+            as_check("mss", Finding.of("model.in_slugs", f"density {rho[0]}", Severity.NOTE, statistic=rho[1], low=SLUGS[0], high=SLUGS[1]))
             if values.imperial
             else water("mss", rho[1], f"density {rho[0]}")
         )  # fmt: skip
@@ -143,8 +143,7 @@ def _capsizes(found: MFile) -> tuple[Check, ...]:
     if gravity_at is None or above <= 0.0:
         return ()
     keys = gravity_at[0] + (f" and {buoyancy_at[0]}" if buoyancy_at else "")
-    return (Check("mss", keys, Severity.WARN, f"centre of gravity {above:.4g} above that of buoyancy", "below it",
-                  "The vehicle turns over. z is down here: was it copied from axes with z up (ENU, FLU)?"),)  # fmt: skip
+    return (as_check("mss", Finding.of("model.capsizes", keys, Severity.WARN, statistic=above)),)
 
 
 def _own_conditions(found: MFile, path: Path) -> tuple[Scaling, Conditions]:

@@ -20,7 +20,6 @@ from coeflab.core.text.bounded import own_text
 from coeflab.core.wording import identifier, matlab, one_line
 from coeflab.formats.coded_tables import KEYS, coded_tables, law_of_tables
 from coeflab.formats.coded_thrusters import coded_thrusters, command_names, held_in_words, limits, read_angle
-from coeflab.formats.export import missing_water
 from coeflab.formats.exported_law import (
     COURSE,
     COURSE_MEANS,
@@ -35,7 +34,8 @@ from coeflab.formats.exported_law import (
     written_terms,
 )
 from coeflab.formats.lacking_law import in_header, unstated
-from coeflab.formats.mss.m_file import TABLED, assignments, own_part
+from coeflab.formats.missing_parts import missing_water
+from coeflab.formats.mss.assignments import TABLED, assignments, own_part
 from coeflab.law.force_law import ForceLaw, ForceTerm
 from coeflab.law.scaling import powers_of
 from coeflab.law.symbols import COMPONENTS, CONTROLS, MOTIONS

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from coeflab.bodies.closed_forms import ellipsoid_added_mass
+from coeflab.bodies.closed_forms.ellipsoid import ellipsoid_added_mass
 from coeflab.core.types import Array, brief
 
 TINY = 1e-15

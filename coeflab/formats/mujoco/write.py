@@ -21,9 +21,10 @@ from coeflab.core.text.xml import numbers, parse_xml, serialised
 from coeflab.core.texts import input_error
 from coeflab.core.types import Array
 from coeflab.core.wording import identifier, one_line
-from coeflab.formats.export import missing_mass, unheld
 from coeflab.formats.exported_law import held_when_straight, number, states_buoyancy, straight_coefficients
 from coeflab.formats.lacking_law import in_header
+from coeflab.formats.loss import unheld
+from coeflab.formats.missing_parts import missing_mass
 from coeflab.formats.mujoco.law import FluidEllipsoid, ellipsoid_of_masses
 from coeflab.law.force_law import ForceLaw
 from coeflab.law.symbols import COMPONENTS, MOTIONS

@@ -19,7 +19,6 @@ from coeflab.core.text.bounded import own_text
 from coeflab.core.wording import identifier, one_line, python
 from coeflab.formats.coded_tables import coded_tables, law_of_tables
 from coeflab.formats.coded_thrusters import coded_thrusters, command_names, held_in_words, limits, read_angle
-from coeflab.formats.export import missing_mass, missing_water
 from coeflab.formats.exported_law import (
     COURSE,
     COURSE_MEANS,
@@ -33,6 +32,7 @@ from coeflab.formats.exported_law import (
     written_terms,
 )
 from coeflab.formats.lacking_law import in_header
+from coeflab.formats.missing_parts import missing_mass, missing_water
 from coeflab.law.force_law import ForceLaw, ForceTerm
 from coeflab.law.scaling import powers_of
 from coeflab.law.symbols import COMPONENTS, CONTROLS, MOTIONS

@@ -23,8 +23,8 @@ from coeflab.core.texts import input_error
 from coeflab.core.types import Array
 from coeflab.core.wording import one_line
 from coeflab.formats import NoDensityError
-from coeflab.formats.imported_file import Stated, imported_file
 from coeflab.formats.left_out import left_out
+from coeflab.formats.stated_file import Stated, stated_file
 from coeflab.formats.stonefish.thrusters import thrusters_of
 from coeflab.law.rigid_body import MassProperties, about_another, inertia_doubt
 from coeflab.law.scaling import Conditions, Scaling
@@ -94,7 +94,7 @@ def read(path: Path, density: float | None = None) -> ParameterFile:
         notes=("lengths made dimensionless by 1 m: the file states none", "axes x forward, y starboard, z down, as in the file"),
         findings=tuple(findings),
     )  # fmt: skip
-    return imported_file(result, [InputFile(path.name, sha256_of(path))], citations)
+    return stated_file(result, [InputFile(path.name, sha256_of(path))], citations)
 
 
 def _one(element: Element, name: str, path: Path) -> float:

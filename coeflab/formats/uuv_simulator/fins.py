@@ -18,8 +18,8 @@ from coeflab.formats.gazebo.actuators import Fins, fins_by_slopes
 from coeflab.formats.gazebo.assembly import Assembly, Joint, pose_of
 from coeflab.formats.gazebo.lift_drag import DEFAULTS, LiftDrag
 from coeflab.formats.left_out import left_out
-from coeflab.formats.uuv_simulator.law import Xacro
 from coeflab.formats.uuv_simulator.thrusters import UnknownLawError, text_of, value_of
+from coeflab.formats.uuv_simulator.xacro import Xacro
 
 FILE = re.compile(r"lib\w*fin(_ros)?_plugin(\.so)?", re.IGNORECASE)
 

@@ -16,20 +16,12 @@ from coeflab.core.text.toml import read_text
 from coeflab.core.text.xml import numbers, once, read_xml
 from coeflab.core.wording import one_line
 from coeflab.formats.gazebo.assembly import assembly
-from coeflab.formats.imported_file import LinkModel, link_file
 from coeflab.formats.left_out import left_out, other_masses, other_plugins, unread_tags
+from coeflab.formats.link_file import LinkModel, link_file
 from coeflab.formats.uuv_simulator.fins import fins_of
-from coeflab.formats.uuv_simulator.law import (
-    FRD,
-    MATRICES,
-    PLUGIN_DENSITY,
-    SPACE,
-    FossenLink,
-    Xacro,
-    read_fossen_link,
-    unfolded,
-)
+from coeflab.formats.uuv_simulator.law import FRD, MATRICES, PLUGIN_DENSITY, FossenLink, read_fossen_link
 from coeflab.formats.uuv_simulator.thrusters import Driven, plain, thrusters_of
+from coeflab.formats.uuv_simulator.xacro import SPACE, Xacro, unfolded
 from coeflab.law.rigid_body import ideal_quadratics, momentum_quadratics
 from coeflab.vehicle.imported_numbers import Written, displaced, gravity, munk_twice, no_mass, water
 from coeflab.vehicle.parameter_file import ParameterFile

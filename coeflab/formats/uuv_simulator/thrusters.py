@@ -33,7 +33,8 @@ from coeflab.formats.rotor_curves import (
     squares,
     where,
 )
-from coeflab.formats.uuv_simulator.law import FRD, Xacro
+from coeflab.formats.uuv_simulator.law import FRD
+from coeflab.formats.uuv_simulator.xacro import Xacro
 from coeflab.vehicle.parameter_parts import ParameterThruster
 
 FILE = re.compile(r"lib\w*thruster(_ros)?_plugin(\.so)?", re.IGNORECASE)

@@ -15,9 +15,10 @@ import numpy as np
 from coeflab.core.text.xml import parse_xml, serialised
 from coeflab.core.types import Array
 from coeflab.core.wording import identifier, one_line
-from coeflab.formats.export import missing_mass, missing_water, unheld
 from coeflab.formats.exported_law import ExportedLaw, common_changes, exported_law, number
 from coeflab.formats.lacking_law import in_header
+from coeflab.formats.loss import unheld
+from coeflab.formats.missing_parts import missing_mass, missing_water
 from coeflab.formats.uuv_simulator.law import MATRICES, read_fossen_link
 from coeflab.law.force_law import ForceTerm
 from coeflab.law.rigid_body import ideal_quadratics

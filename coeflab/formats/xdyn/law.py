@@ -6,16 +6,10 @@ are used with matrices about the centre of gravity); xdyn/core/ForceModel.cpp, o
 of gravity); xdyn/force_models/ManeuveringForceModel.cpp, get_force (ground velocities; the force acts at the origin of the
 model's own frame); DampingForceModel.cpp, get_force and LinearDampingForceModel.cpp, QuadraticDampingForceModel.cpp
 (-D nu and -D |nu| nu at the hydrodynamic forces calculation point).
-
-Expressions of xdyn's ``maneuvering`` model: which of them xdyn reads to their end, and their values.
-
-xdyn's grammar (code/force_models/inc/maneuvering_grammar.hpp in github.com/sirehna/xdyn) has no sign before a name or a
-bracket, and what follows such a sign is passed over without a word; these expressions are refused here.
 """
 
 from __future__ import annotations
 
-import re
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import partial
@@ -24,67 +18,13 @@ from typing import Any
 
 import numpy as np
 
-from coeflab.core.arithmetic import ArithmeticProblem, evaluate
 from coeflab.core.errors import InputError, shown
-from coeflab.core.limits import ARITHMETIC_DEEPEST, bounded_number
+from coeflab.core.limits import bounded_number
 from coeflab.core.text.yaml import number
 from coeflab.core.types import Array, brief, locked
+from coeflab.formats.xdyn.expressions import settled
 from coeflab.law.symbols import COMPONENTS, MOTIONS
 from coeflab.law.transforms import force_transfer
-
-_STRAY = re.compile(
-    r"(?P<sign>(?:^|[-+*/^(])\s*[-+](?![\d.])"
-    r"|(?:^|[-+*/(])\s*[-+][\d.]+(?:[eE][-+]?\d+)?\s*\^)"
-    r"|(?P<letter>[^\sA-Za-z0-9_.+\-*/^()]|\.[*/^]|(?<![\w.])[\d.]+[dD])",
-    re.ASCII,
-)
-_USED = re.compile(r"(?<![\w.])[A-Za-z]\w*(?!\w|\s*\()", re.ASCII)
-
-
-def settled(
-    expressions: Mapping[str, str],
-    given: Mapping[str, Any],
-    functions: Mapping[str, Callable[..., Any]],
-    finish: Callable[[str, Any], Any] | None = None,
-) -> dict[str, Any]:
-    """Values of all expressions that X Y Z K M N need, each after those that it uses.
-
-    Parameters
-    ----------
-    expressions : mapping of name to text
-    given : mapping of name to value
-        Constants and commands.
-    functions : mapping of name to callable
-        States such as ``u(t)``, and ``abs`` or ``sqrt``.
-    finish : callable, optional
-        Name and value -> the value to go on with.
-
-    Raises
-    ------
-    ArithmeticProblem
-        No arithmetic, a name without a value, a name that needs itself, or what xdyn does not read to its end.
-    """
-    known = dict(given)
-
-    def settle(name: str, above: tuple[str, ...]) -> None:
-        if name in known:
-            return
-        if name in above or len(above) > ARITHMETIC_DEEPEST:
-            raise ArithmeticProblem(f"{name}, which needs itself or more than {ARITHMETIC_DEEPEST} others in a row")
-        text = expressions[name]
-        stray = _STRAY.search(text)
-        if stray is not None:
-            raise ArithmeticProblem(f"{stray[0].strip()} in {name}, where xdyn stops reading")
-        for used in _USED.findall(text):
-            if used in expressions:
-                settle(used, (*above, name))
-        value = evaluate(text, known, functions)
-        known[name] = value if finish is None else finish(name, value)
-
-    for component in ("X", "Y", "Z", "K", "M", "N"):
-        settle(component, ())
-    return known
-
 
 RIGID = "rigid body inertia matrix at the center of gravity and projected in the body frame"
 ADDED = "added mass matrix at the center of gravity and projected in the body frame"

@@ -13,7 +13,8 @@ import numpy as np
 from coeflab.core.arithmetic import ArithmeticProblem
 from coeflab.core.types import Array, brief
 from coeflab.formats.xdyn.actuators import limited, read_limits
-from coeflab.formats.xdyn.law import Manoeuvring, XdynBody, settled
+from coeflab.formats.xdyn.expressions import settled
+from coeflab.formats.xdyn.law import Manoeuvring, XdynBody
 from coeflab.formats.xdyn.products import Product, Products, as_products
 from coeflab.law.force_law import AHEAD
 from coeflab.law.symbols import COMPONENTS, CONTROLS, LINEAR, MOTIONS

@@ -21,13 +21,14 @@ from coeflab.core.texts import input_error
 from coeflab.core.types import Array
 from coeflab.core.wording import one_line
 from coeflab.formats.exported_law import sname
-from coeflab.formats.imported_file import Law, Stated, imported_file, matrix_doubts
 from coeflab.formats.left_out import left_out
+from coeflab.formats.stated_coefficients import matrix_doubts
+from coeflab.formats.stated_file import Law, Stated, stated_file
 from coeflab.formats.xdyn.actuators import read_limits
 from coeflab.formats.xdyn.law import XdynBody, xdyn_body
 from coeflab.formats.xdyn.multiplied_out import MultipliedOut, multiplied_out
 from coeflab.formats.xdyn.products import Product
-from coeflab.law.added_mass import definiteness
+from coeflab.law.definiteness import definiteness
 from coeflab.law.rigid_body import MassProperties, about_another, ideal_quadratics, inertia_doubt
 from coeflab.law.scaling import Conditions, Scaling, powers_of
 from coeflab.law.symbols import COMPONENTS, CONTROLS, MOTIONS, derivative
@@ -73,7 +74,7 @@ def read(path: Path, density: float | None = None) -> ParameterFile:  # noqa: AR
         stated = _stated(body, law, path)
     except ArithmeticProblem as why:
         raise input_error("formats.no_sums_of_products", path, why=str(why)) from None
-    return imported_file(stated, [InputFile(path.name, sha256_of(path))], citations)
+    return stated_file(stated, [InputFile(path.name, sha256_of(path))], citations)
 
 
 def examine(path: Path) -> tuple[Check, ...]:

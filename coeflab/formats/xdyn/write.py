@@ -18,7 +18,6 @@ from coeflab.core.types import Array, remembered
 from coeflab.core.units import STANDARD_GRAVITY
 from coeflab.core.wording import identifier, listed, one_line
 from coeflab.formats.coded_thrusters import held_in_words, limits
-from coeflab.formats.export import missing_water
 from coeflab.formats.exported_law import (
     COURSE,
     COURSE_MEANS,
@@ -32,20 +31,11 @@ from coeflab.formats.exported_law import (
     written_terms,
 )
 from coeflab.formats.lacking_law import in_header
+from coeflab.formats.missing_parts import missing_water
 from coeflab.formats.xdyn.actuators import command_names, held_lines, limited, thrust_lines
-from coeflab.formats.xdyn.law import (
-    ADDED,
-    BUOYANCY,
-    DAMPING,
-    FUNCTIONS,
-    HERE,
-    RIGID,
-    THRUST,
-    XdynBody,
-    settled,
-    xdyn_body,
-)
-from coeflab.law.added_mass import definiteness
+from coeflab.formats.xdyn.expressions import settled
+from coeflab.formats.xdyn.law import ADDED, BUOYANCY, DAMPING, FUNCTIONS, HERE, RIGID, THRUST, XdynBody, xdyn_body
+from coeflab.law.definiteness import definiteness
 from coeflab.law.force_law import ForceTerm
 from coeflab.law.rigid_body import MassProperties, about_another, rigid_body_inertia
 from coeflab.law.symbols import COMPONENTS, CONTROLS, MOTIONS

@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 from coeflab.core.errors import InputError, shown
 from coeflab.core.limits import require_rows
 from coeflab.core.options import bounded, parse_options
+from coeflab.core.texts import input_error
 from coeflab.core.types import Array
 from coeflab.glider.glider import Glider
 from coeflab.glider.motion import GliderBody, Leg, Rates, Setting, legs, march, momentum, rates, velocity
@@ -126,9 +127,7 @@ def _check(glider: Glider, manoeuvre: Manoeuvre, step: float) -> None:
             raise InputError(f"{phase.name} until {phase.until.quantity}", "until a depth, or a time", column="glider")
     off_plane = np.concatenate([manoeuvre.velocity[[1, 3, 5]], manoeuvre.attitude[[1, 3]]])
     if np.any(off_plane):
-        raise InputError(
-            "a start with sway, roll or yaw", "a start in the vertical plane, heading north", column="glider"
-        )
+        raise input_error("glider.start_sway_roll", column="glider")
     require_rows(manoeuvre.duration / step, "glider.step", "Take a larger step.")
 
 

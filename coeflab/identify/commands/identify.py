@@ -12,7 +12,7 @@ from coeflab.cli import options, show
 
 if TYPE_CHECKING:
     from coeflab.core.table import Check
-    from coeflab.identify.identification import Identified
+    from coeflab.identify.identified import Identified
 
 
 EXAMPLE = "coeflab identify zigzag.csv turning_circle.csv --params vehicle.parameters.json"
@@ -87,7 +87,7 @@ def _bench(series: list[Path], params: Path, thruster: str, window: str, out: Pa
     from coeflab.identify.identified_figures import bench_figure
     from coeflab.identify.thruster import WINDOW, bench_test, with_curves
     from coeflab.report.as_json.findings import findings
-    from coeflab.report.figures.svg import sheet
+    from coeflab.report.figures.svg_file import sheet
 
     within = quantity(window, "time", key="--window") if window else WINDOW
     checks: Sequence[Check] = ()
@@ -155,7 +155,7 @@ def _write(found: Identified, folder: Path) -> list[Path]:
     from coeflab.core.files import write_all
     from coeflab.identify.identified_figures import identified_figure
     from coeflab.identify.identified_tables import terms_csv
-    from coeflab.report.figures.svg import sheet
+    from coeflab.report.figures.svg_file import sheet
 
     content = {
         f"{found.name}.identified.csv": terms_csv(found),

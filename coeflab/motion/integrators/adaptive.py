@@ -11,19 +11,31 @@ from dataclasses import replace
 import numpy as np
 
 from coeflab.core.types import Array, dataclass
-from coeflab.motion import manoeuvre
-from coeflab.motion.dynamics import Dynamics, rates_of_one
+from coeflab.motion.dynamics import Dynamics
+from coeflab.motion.orders import (
+    NEAR,
+    NOT_FINITE,
+    STEP_TOO_SMALL,
+    TOO_FAST,
+    Marching,
+    Orders,
+    blank,
+    ramp,
+    reach_time,
+    watched_value,
+)
+from coeflab.motion.rates_of_one import rates_of_one
 
 
 def march_adaptive(
     dynamics: Dynamics,
-    orders: manoeuvre.Orders,
+    orders: Orders,
     start: Array,
     interval: float,
     fastest: float = 1e3,
     tolerance: float = 1e-9,
     method: str = "LSODA",
-) -> manoeuvre.Marching:
+) -> Marching:
     """Move one vehicle.
 
     Parameters
@@ -40,7 +52,7 @@ def march_adaptive(
     method : str
         A solver class of `scipy.integrate`.
     """
-    out = manoeuvre.blank(1, orders, interval, 1)
+    out = blank(1, orders, interval, 1)
     out.records[0, 0] = start
     at, begin = _At(0.0, start.copy()), orders.begin.copy()
     spun = None if orders.late is None else orders.late.begin[:1]
@@ -83,7 +95,7 @@ class _Phase:
     """One phase and the orders that stand in it."""
 
     dynamics: Dynamics
-    orders: manoeuvre.Orders
+    orders: Orders
     number: int
     begin: Array
     since: float
@@ -93,7 +105,7 @@ class _Phase:
     def angles(self, time: float) -> Array:
         """(3, 1) angles of the control surfaces."""
         target = self.orders.angles[self.number][:, None]
-        return manoeuvre.ramp(self.begin[:, None], target, self.orders.rate, np.array([time - self.since]))
+        return ramp(self.begin[:, None], target, self.orders.rate, np.array([time - self.since]))
 
     def spinning(self, time: float) -> Array | None:
         """(1, k) what thrusters with a lag do."""
@@ -111,7 +123,7 @@ class _Phase:
     def pieces(self) -> list[float]:
         """Times after the order at which a control surface stands or a thruster passes a knot, and the end of the phase."""
         target = self.orders.angles[self.number][:, None]
-        reach = manoeuvre.reach_time(self.begin[:, None], target, self.orders.rate)[:, 0]
+        reach = reach_time(self.begin[:, None], target, self.orders.rate)[:, 0]
         if self.orders.late is not None and self.spun is not None:
             reach = np.append(reach, self.orders.late.knots(self.spun, ONE, ONE + self.number)[:, 0])
         longest = float(self.orders.longest[self.number])
@@ -122,13 +134,13 @@ class _Phase:
         watched = int(self.orders.watched[self.number])
         if watched < 0:
             return 1.0
-        here = manoeuvre.watched_value(watched, state[:, None])[0]
+        here = watched_value(watched, state[:, None])[0]
         return float(self.orders.sign[self.number] * (here - self.orders.value[self.number]))
 
     def _level_inside(self, time: float, inside: Callable[[float], Array]) -> float:
         return self.level(inside(time))
 
-    def move(self, at: _At, until: float, out: manoeuvre.Marching, tolerance: float, method: str) -> _At:
+    def move(self, at: _At, until: float, out: Marching, tolerance: float, method: str) -> _At:
         """As far as a time, smooth all the way, or to the event before it."""
         from scipy import integrate
         from scipy.optimize import brentq
@@ -153,7 +165,7 @@ class _Phase:
             while solver.status == "running":
                 solver.step()
                 if solver.status == "failed":
-                    return _At(at.time, at.state, ended=manoeuvre.STEP_TOO_SMALL)
+                    return _At(at.time, at.state, ended=STEP_TOO_SMALL)
                 now, state = float(solver.t), solver.y
                 after = self.level(state) if watched else 1.0
                 met = level < 0.0 <= after
@@ -167,17 +179,17 @@ class _Phase:
                         row += 1
                 u, v, w = state[7:10].tolist()
                 fast = u * u + v * v + w * w > limit
-                at, level = _At(now, state, met, manoeuvre.TOO_FAST if fast else 0), after
+                at, level = _At(now, state, met, TOO_FAST if fast else 0), after
                 if met or fast:
                     break
         except (_NotFiniteError, OverflowError):
-            return _At(at.time, _upright(at.state), ended=manoeuvre.NOT_FINITE)
+            return _At(at.time, _upright(at.state), ended=NOT_FINITE)
         return replace(at, state=_upright(at.state))
 
 
-def _due(out: manoeuvre.Marching) -> list[float]:
+def _due(out: Marching) -> list[float]:
     """Times from which on a step holds a record, a rounding early, and an end that never comes."""
-    near = manoeuvre.NEAR * out.times[-1] / max(len(out.times) - 1, 1)
+    near = NEAR * out.times[-1] / max(len(out.times) - 1, 1)
     return [*(out.times - near).tolist(), math.inf]
 
 

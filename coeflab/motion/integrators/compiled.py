@@ -18,7 +18,7 @@ from coeflab.law.transforms import along_body
 from coeflab.motion.dynamics import FIRST, FLAT, Dynamics
 from coeflab.motion.integrators import fixed_step
 from coeflab.motion.integrators.fixed_step import SECANTS
-from coeflab.motion.manoeuvre import NEAR, NOT_FINITE, TOO_FAST, Marching, Orders, blank
+from coeflab.motion.orders import NEAR, NOT_FINITE, TOO_FAST, Marching, Orders, blank
 
 # Few arrays, because every call counts the references of each: the source column of each variable; its prime, low and high;
 # powers of V; rows of the pool and component of each term; for which of X, Y, Z each group of drag, side force and lift speaks,

@@ -14,15 +14,15 @@ from numpy.typing import NDArray
 
 from coeflab.core.types import Array
 from coeflab.law.force_law import Ints
-from coeflab.motion import manoeuvre
 from coeflab.motion.dynamics import Dynamics
+from coeflab.motion.orders import NEAR, NOT_FINITE, TOO_FAST, Marching, Orders, blank, ramp, reach_time, watched_value
 
 SECANTS = 8
 
 
 def march(
-    dynamics: Dynamics, orders: manoeuvre.Orders, start: Array, step: float, every: int = 1, fastest: float = 1e3
-) -> manoeuvre.Marching:
+    dynamics: Dynamics, orders: Orders, start: Array, step: float, every: int = 1, fastest: float = 1e3
+) -> Marching:
     """March all members.
 
     Parameters
@@ -44,7 +44,7 @@ def march(
 class _March:
     """Where every member is, one column a member; changed in place."""
 
-    def __init__(self, dynamics: Dynamics, orders: manoeuvre.Orders, start: Array, step: float, fastest: float) -> None:
+    def __init__(self, dynamics: Dynamics, orders: Orders, start: Array, step: float, fastest: float) -> None:
         count = len(start)
         self.dynamics, self.orders, self.step, self.fastest = dynamics, orders, step, fastest
         self.state = start.T.copy()
@@ -57,19 +57,17 @@ class _March:
         self.spun = np.zeros((count, 0)) if late is None else np.broadcast_to(late.begin, (count, len(late.lag))).copy()
         self.level = self._level(self.state, self.phase)
 
-    def run(self, every: int) -> manoeuvre.Marching:
+    def run(self, every: int) -> Marching:
         """All steps."""
         steps = self.orders.steps(self.step)
-        self.out = manoeuvre.blank(len(self.phase), self.orders, self.step, every)
+        self.out = blank(len(self.phase), self.orders, self.step, every)
         self.out.records[:, 0] = self.state.T
         for j in range(1, steps + 1):
             remain = np.where(self.live, self.step, 0.0)
             while (moving := np.flatnonzero(remain > 0.0)).size:
                 self._move(moving, j * self.step, remain)
             if j % every == 0:
-                there = self.live | (self.out.end_time >= j * self.step - manoeuvre.NEAR * self.step) & (
-                    self.out.ended == 0
-                )
+                there = self.live | (self.out.end_time >= j * self.step - NEAR * self.step) & (self.out.ended == 0)
                 self.out.records[there, j // every] = self.state.T[there]
             if not self.live.any():
                 break
@@ -80,11 +78,11 @@ class _March:
         orders, left = self.orders, remain[who]
         since = until - left - self.begun[who]
         room = orders.longest[self.phase[who]] - since
-        kinks = manoeuvre.reach_time(self.begin[:, who], orders.angles[self.phase[who]].T, orders.rate)
+        kinks = reach_time(self.begin[:, who], orders.angles[self.phase[who]].T, orders.rate)
         if orders.late is not None:
             kinks = np.vstack([kinks, orders.late.knots(self.spun[who], who, self.phase[who])])
         kinks = kinks - since
-        kinks[kinks <= manoeuvre.NEAR * self.step] = np.inf
+        kinks[kinks <= NEAR * self.step] = np.inf
         length = np.minimum(np.minimum(left, room), kinks.min(axis=0))
         trial = self._step(who, since, length)
         level = self._level(trial, self.phase[who])
@@ -99,11 +97,11 @@ class _March:
         self.state[:, selected], self.level[selected] = trial[:, sound], level[sound]
         remain[who] = np.where(length >= left, 0.0, left - length)
         now = until - left
-        self._stop(who[~sound], now[~sound], manoeuvre.NOT_FINITE, remain)
+        self._stop(who[~sound], now[~sound], NOT_FINITE, remain)
         now = now + length
         runaway = sound & (speed > self.fastest)
-        self._stop(who[runaway], now[runaway], manoeuvre.TOO_FAST, remain)
-        over = sound & ~runaway & (crossed | (room - length <= manoeuvre.NEAR * self.step))
+        self._stop(who[runaway], now[runaway], TOO_FAST, remain)
+        over = sound & ~runaway & (crossed | (room - length <= NEAR * self.step))
         if np.any(over):
             self._switch(who[over], now[over], crossed[over], remain)
 
@@ -114,7 +112,7 @@ class _March:
         begin, target = self.begin[:, who], self.orders.angles[phase].T
         first, middle, last = (
             (
-                manoeuvre.ramp(begin, target, self.orders.rate, since + f * length),
+                ramp(begin, target, self.orders.rate, since + f * length),
                 self._pushed(who, phase, since + f * length),
             )
             for f in (0.0, 0.5, 1.0)
@@ -158,9 +156,7 @@ class _March:
         for which in np.unique(watched[watched >= 0]):
             at = np.flatnonzero(watched == which)
             chosen = phase[at]
-            out[at] = self.orders.sign[chosen] * (
-                manoeuvre.watched_value(int(which), state[:, at]) - self.orders.value[chosen]
-            )
+            out[at] = self.orders.sign[chosen] * (watched_value(int(which), state[:, at]) - self.orders.value[chosen])
         return out
 
     def _switch(self, who: Ints, now: Array, met: NDArray[np.bool_], remain: Array) -> None:
@@ -172,7 +168,7 @@ class _March:
         self._stop(who[last], now[last], 0, remain)
         on = who[~last]
         since = now[~last] - self.begun[on]
-        self.begin[:, on] = manoeuvre.ramp(self.begin[:, on], orders.angles[phase[~last]].T, orders.rate, since)
+        self.begin[:, on] = ramp(self.begin[:, on], orders.angles[phase[~last]].T, orders.rate, since)
         if orders.late is not None:
             self.spun[on] = orders.late.actual(self.spun[on], on, phase[~last], since)
         self.phase[on] += 1

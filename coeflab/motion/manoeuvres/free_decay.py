@@ -12,7 +12,8 @@ from coeflab.core.options import bounded, measured, one_of, parse_options
 from coeflab.core.texts import input_error
 from coeflab.motion.approach import judged
 from coeflab.motion.dynamics import from_euler
-from coeflab.motion.manoeuvre import Figure, Manoeuvre, Phase, decay
+from coeflab.motion.manoeuvre import Figure, Manoeuvre, Phase
+from coeflab.motion.readings import decay
 from coeflab.motion.trajectory import Trajectory
 from coeflab.motion.vehicle import Vehicle
 

@@ -14,7 +14,8 @@ from coeflab.core.texts import input_error
 from coeflab.core.types import Array
 from coeflab.motion.approach import judged
 from coeflab.motion.dynamics import from_euler
-from coeflab.motion.manoeuvre import Figure, Manoeuvre, Phase, settled
+from coeflab.motion.manoeuvre import Figure, Manoeuvre, Phase
+from coeflab.motion.readings import settled
 from coeflab.motion.trajectory import Trajectory
 from coeflab.motion.vehicle import Vehicle
 

@@ -11,9 +11,11 @@ import numpy as np
 
 from coeflab.core.errors import InputError
 from coeflab.core.options import bounded, measured, one_of, orders, parse_options, text
+from coeflab.core.texts import input_error
 from coeflab.motion.approach import judged, thruster_orders
 from coeflab.motion.dynamics import from_euler, rotations
-from coeflab.motion.manoeuvre import Figure, Manoeuvre, Phase, Until, extreme
+from coeflab.motion.manoeuvre import Figure, Manoeuvre, Phase, Until
+from coeflab.motion.readings import extreme
 from coeflab.motion.trajectory import Trajectory
 from coeflab.motion.vehicle import Vehicle
 from coeflab.motion.vehicle import vehicle as vehicle_of
@@ -103,11 +105,9 @@ def _require_liquid_below(vehicle: Vehicle, other: Vehicle, start: str) -> None:
         f"{below.density:.4g} kg/m^3 of {below.name} below the surface, {above.density:.4g} of {above.name} above it"
     )
     way = "above" if start == "below" else "below"
-    raise InputError(
-        found, f"the medium below at least {DENSER:g} times as dense as that above",
-        column=f"{NAME}.start" if turned else f"{NAME}.into",
-        advice=f"{vehicle.name} is the medium of the start: --start {way}." if turned else
-        "Take the parameter file of the other medium: one of water, one of air.",
+    raise input_error(
+        "motion.medium_below_least", column=f"{NAME}.start" if turned else f"{NAME}.into", found=found, denser=DENSER,
+        advice=f"{vehicle.name} is the medium of the start: --start {way}." if turned else "Take the parameter file of the other medium: one of water, one of air.",
     )  # fmt: skip
 
 

@@ -10,7 +10,8 @@ import numpy as np
 
 from coeflab.core.options import bounded, measured, parse_options
 from coeflab.motion import approach
-from coeflab.motion.manoeuvre import Figure, Manoeuvre, Phase, settled
+from coeflab.motion.manoeuvre import Figure, Manoeuvre, Phase
+from coeflab.motion.readings import settled
 from coeflab.motion.trajectory import Trajectory
 from coeflab.motion.turn_limits import unlimited
 from coeflab.motion.vehicle import Vehicle

@@ -14,7 +14,8 @@ from coeflab.motion.approach import judged, thruster_orders
 from coeflab.motion.dynamics import from_euler, rotations
 from coeflab.motion.manoeuvre import Figure, Manoeuvre, Phase
 from coeflab.motion.trajectory import Trajectory
-from coeflab.motion.trim.trim import MOTION, trim
+from coeflab.motion.trim.steady_motion import MOTION
+from coeflab.motion.trim.trim import trim
 from coeflab.motion.vehicle import Vehicle
 
 summary = "a steady motion and its commands from trim, held: radius and climb of the helix, and departure from it"

@@ -11,7 +11,8 @@ import numpy as np
 from coeflab.core.errors import InputError
 from coeflab.core.options import bounded, measured, one_of, parse_options
 from coeflab.motion.approach import along, judged_rows, propulsion, turning_sense, within_limit
-from coeflab.motion.manoeuvre import Figure, Manoeuvre, Phase, Until, extreme, value_at
+from coeflab.motion.manoeuvre import Figure, Manoeuvre, Phase, Until
+from coeflab.motion.readings import extreme, value_at
 from coeflab.motion.trajectory import Trajectory
 from coeflab.motion.turn_limits import unlimited
 from coeflab.motion.vehicle import Vehicle

@@ -10,7 +10,8 @@ import numpy as np
 
 from coeflab.core.options import bounded, measured, parse_options
 from coeflab.motion.approach import along, judged, propulsion
-from coeflab.motion.manoeuvre import Figure, Manoeuvre, Phase, Until, value_at
+from coeflab.motion.manoeuvre import Figure, Manoeuvre, Phase, Until
+from coeflab.motion.readings import value_at
 from coeflab.motion.trajectory import Trajectory
 from coeflab.motion.vehicle import Vehicle
 from coeflab.vehicle.parameter_parts import THRUST

@@ -8,7 +8,8 @@ from typing import Any
 
 from coeflab.core.options import bounded, measured, orders, parse_options
 from coeflab.motion.approach import along, judged, propulsion, thruster_orders
-from coeflab.motion.manoeuvre import Figure, Manoeuvre, Phase, settled
+from coeflab.motion.manoeuvre import Figure, Manoeuvre, Phase
+from coeflab.motion.readings import settled
 from coeflab.motion.trajectory import Trajectory
 from coeflab.motion.vehicle import Vehicle
 

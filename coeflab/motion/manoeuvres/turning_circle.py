@@ -10,7 +10,8 @@ import numpy as np
 
 from coeflab.core.options import bounded, measured, one_of, orders, parse_options
 from coeflab.motion import approach
-from coeflab.motion.manoeuvre import Figure, Manoeuvre, Phase, Until, crossing, settled, value_at
+from coeflab.motion.manoeuvre import Figure, Manoeuvre, Phase, Until
+from coeflab.motion.readings import crossing, settled, value_at
 from coeflab.motion.trajectory import Trajectory
 from coeflab.motion.turn_limits import unlimited
 from coeflab.motion.vehicle import Vehicle

@@ -12,7 +12,8 @@ from numpy.typing import NDArray
 from coeflab.core.options import bounded, measured, orders, parse_options
 from coeflab.core.texts import input_error
 from coeflab.motion import approach
-from coeflab.motion.manoeuvre import Figure, Manoeuvre, Phase, Until, crossing, extreme, value_at
+from coeflab.motion.manoeuvre import Figure, Manoeuvre, Phase, Until
+from coeflab.motion.readings import crossing, extreme, value_at
 from coeflab.motion.trajectory import Trajectory
 from coeflab.motion.turn_limits import unlimited
 from coeflab.motion.vehicle import Vehicle

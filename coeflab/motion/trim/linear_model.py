@@ -19,9 +19,10 @@ from coeflab.core.files import write_atomically
 from coeflab.core.missed import suggesting
 from coeflab.core.texts import input_error, text_of
 from coeflab.core.types import Array, dataclass, in_angles
-from coeflab.motion.dynamics import NEUTRAL, STEP, Slopes, modes, participation
+from coeflab.motion.small_motions import NEUTRAL, STEP, Slopes, modes, participation
 from coeflab.motion.trim.linear_files import ENDINGS, mat, npz
-from coeflab.motion.trim.trim import PLACES, Trim
+from coeflab.motion.trim.steady_motion import PLACES
+from coeflab.motion.trim.trim import Trim
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -380,9 +381,9 @@ def _placed(
             raise InputError(shown(name), f"some of {', '.join(PLACES)}", column="also")
         k, n, m = list(PLACES).index(name), len(states), place.matrix.shape[1]
         if not place.matrix[k].any():
-            raise InputError(
-                f"{name}, which {', '.join(s.name for s in states)} do not move", f"motions that change {name}", column="also",
-                advice=f"--free with {'r' if name == 'heading' else 'w or q'}.",
+            raise input_error(
+                "motion.unmoved_states", column="also", name=name, states=", ".join(s.name for s in states),
+                value="r" if name == "heading" else "w or q",
             )  # fmt: skip
         a, b = a.grown(1, 1), b.grown(1, 0)
         a.matrix[n, :m], a.error[n, :m] = place.matrix[k], place.error[k]

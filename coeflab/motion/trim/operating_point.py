@@ -10,8 +10,9 @@ import numpy as np
 
 from coeflab.core.table import Table, number
 from coeflab.core.types import Array, in_angles
-from coeflab.motion.dynamics import Growth
-from coeflab.motion.trim.solver import HOLDS, Found, Problem, solve
+from coeflab.motion.small_motions import Growth
+from coeflab.motion.trim.moves import HOLDS
+from coeflab.motion.trim.solver import Found, Problem, solve
 
 FAMILY_SHOWN = 0.05  # an unknown that moves less, of the one that moves most, is left out of the words
 NOTABLE_SHARE = 1e-2  # an equation violated less, of the worst, is left out of the words

@@ -31,11 +31,13 @@ from coeflab.core.texts import text_of
 from coeflab.core.types import Array, dataclass
 from coeflab.core.version import VERSION
 from coeflab.law.symbols import CONTROLS
+from coeflab.motion.ensemble import Ensemble
 from coeflab.motion.manoeuvre import Figure, Manoeuvre
 from coeflab.motion.manoeuvres import MANOEUVRES
-from coeflab.motion.marching import Ensemble, march
+from coeflab.motion.marching import march
 from coeflab.motion.simulation import moved
-from coeflab.motion.uncertainty.draws import Uncertain, drawn, uncertain
+from coeflab.motion.uncertainty.drawn_vehicles import drawn
+from coeflab.motion.uncertainty.draws import Uncertain, uncertain
 from coeflab.motion.vehicle import Vehicle
 from coeflab.vehicle.parameter_file import ParameterFile
 

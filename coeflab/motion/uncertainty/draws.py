@@ -1,13 +1,8 @@
-"""Draws of what a parameter file is uncertain about, from its covariance; normal distributions throughout.
-
-An ensemble out of one vehicle and draws of its parameter file, and which draws a manoeuvre does not feel.
-
-G_h and G_v of draws.
-"""
+"""Draws of what a parameter file is uncertain about, from its covariance; normal distributions throughout."""
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 
 import numpy as np
 from scipy.linalg import block_diag
@@ -15,17 +10,8 @@ from scipy.linalg import block_diag
 from coeflab.core.errors import shown
 from coeflab.core.texts import input_error
 from coeflab.core.types import Array, dataclass, locking
-from coeflab.fits.uncertainty.propagation import reaches_zero
-from coeflab.law.force_law import WIND, ForceTerm
-from coeflab.law.rigid_body import ideal_quadratics
-from coeflab.law.symbols import COMPONENTS, CONTROLS, MOTIONS, derivative
-from coeflab.motion.manoeuvre import Figure
-from coeflab.motion.marching import Ensemble
-from coeflab.motion.vehicle import Vehicle
-from coeflab.vehicle.force_law import sources_of
-from coeflab.vehicle.inertia import MEASURED, entry_of, stated_accelerations
+from coeflab.law.symbols import derivative
 from coeflab.vehicle.parameter_file import ParameterFile
-from coeflab.vehicle.stability import INDICES, stability_index
 
 CELLS = Sequence[Sequence[float | None]]
 CORRELATED = 0.1  # a shared variance of 1 %: below it two coefficients are counted as sources of their own
@@ -219,154 +205,3 @@ def _notes(parameters: ParameterFile, held: Sequence[str]) -> tuple[str, ...]:
         "distribution: normal, standard uncertainty U95/2, correlated as the file's covariance says",
         f"{UNSTATED}: {', '.join(others)}",
     )
-
-
-VELOCITY_OF = {"alpha": "w", "beta": "v"}
-
-
-def drawn(
-    vehicle: Vehicle, parameters: ParameterFile, symbols: Sequence[str], deviations: Array, tables: bool = False
-) -> Ensemble:
-    """Members whose coefficients and acceleration derivatives deviate.
-
-    Parameters
-    ----------
-    vehicle : Vehicle
-        Of ``parameters``.
-    parameters : ParameterFile
-    symbols : sequence of str
-        Of the columns of ``deviations``, as in `coeflab.motion.uncertainty.draws.Uncertain`.
-    deviations : (m, k) array
-        In the units of the file.
-    tables : bool
-        Whether fitted tables come first in the vehicle.
-
-    Raises
-    ------
-    InputError
-        A member whose effective mass is not positive definite.
-    """
-    columns = {s: k for k, s in enumerate(symbols)}
-    coefficients = np.repeat(vehicle.law.coefficient[None], len(deviations), axis=0)
-    for row, t in enumerate(vehicle.law.terms):
-        if t.in_file in columns:
-            coefficients[:, row] += t.per_prime * deviations[:, columns[t.in_file]]
-    change = _added(vehicle, parameters, symbols, deviations)
-    if change is None:
-        return Ensemble(vehicle, coefficients)
-    ideal = None
-    if parameters.added_mass is not None:
-        open_products = sources_of(parameters, tables).open_products()
-        ideal = vehicle.law.ideal + np.array([np.where(open_products, ideal_quadratics(c), 0.0) for c in change])
-    return Ensemble(vehicle, coefficients, added=vehicle.added + change, ideal=ideal)
-
-
-def _added(vehicle: Vehicle, parameters: ParameterFile, symbols: Sequence[str], deviations: Array) -> Array | None:
-    """(m, 6, 6) change of the added mass, by half where the file states an entry on both sides of the diagonal; None where
-    no draw is felt in it.
-    """
-    if vehicle.water.used != MEASURED:
-        return None
-    stated = stated_accelerations(parameters)
-    moved = [(k, at, s) for k, s in enumerate(symbols) if (at := entry_of(s)) is not None]
-    if not moved:
-        return None
-    out = np.zeros((len(deviations), 6, 6))
-    for k, (i, j), s in moved:
-        change = -deviations[:, k] * parameters.scaling.unit(s, vehicle.density)
-        share = 0.5 if i != j and (j, i) in stated else 1.0
-        out[:, i, j] += share * change
-        if i != j:
-            out[:, j, i] += share * change
-    return out
-
-
-def unfelt(
-    vehicle: Vehicle, symbols: Sequence[str], ordered: Collection[str], resting: Collection[str] = ()
-) -> frozenset[str]:
-    """Symbols that cannot change the motion: of held motions, of controls that are never moved, of terms that are not in the law.
-
-    Parameters
-    ----------
-    vehicle : Vehicle
-        Held motions are taken to be zero, apart from u.
-    symbols : sequence of str
-    ordered : collection of str
-        Controls that the manoeuvre moves.
-    resting : collection of str
-        Free motions that do not occur, whatever the draw: v and r of a straight run.
-    """
-    terms = {t.in_file: t for t in vehicle.law.terms}
-    still = ({*MOTIONS} - {*vehicle.free, "u"}) | ({*CONTROLS} - {*ordered}) | {*resting}
-    out = set()
-    for s in symbols:
-        at = entry_of(s)
-        if at is not None:
-            felt = vehicle.water.used == MEASURED and all(
-                MOTIONS[i] in vehicle.free and MOTIONS[i] not in resting for i in at
-            )
-        else:
-            felt = s in terms and _acts(terms[s], vehicle, still)
-        if not felt:
-            out.add(s)
-    return frozenset(out)
-
-
-def _acts(term: ForceTerm, vehicle: Vehicle, still: Collection[str]) -> bool:
-    if any(VELOCITY_OF.get(v, v) in still for v in term.variables):
-        return False
-    return term.component in WIND or MOTIONS[COMPONENTS.index(term.component)] in vehicle.free
-
-
-DEFINITIONS = {
-    "G_h": "1 - Nv'(Yr' - m')/[Yv'(Nr' - xG'm')], positive: stable on a straight course (Feldman 1979)",
-    "G_v": "1 - Mw'(Zq' + m')/[Zw'(Mq' - xG'm')], positive: stable in the vertical plane at high speed (Feldman 1979)",
-}
-
-
-def drawn_stability(
-    parameters: ParameterFile, varied: Uncertain, deviations: Array
-) -> dict[str, tuple[Figure, Array, str]]:
-    """Name to the index at the file's values, its values at the draws (n,), and why it has no interval, in words.
-
-    The rules are those of `coeflab.vehicle.stability.stability`: every coefficient in it needs an uncertainty, and no denominator may
-    reach zero.
-
-    Parameters
-    ----------
-    parameters : ParameterFile
-        Planes without mass or without all four coefficients are left out.
-    varied : Uncertain
-    deviations : (n, k) array
-    """
-    out = {}
-    for name, (*symbols, sign) in INDICES.items():
-        found = [c for s in symbols if (c := parameters.coefficient(str(s))) is not None and c.value is not None]
-        if parameters.mass is None or len(found) < len(symbols):
-            continue
-        values = [float(c.value or 0.0) for c in found]
-        at = [varied.symbols.index(c.symbol) if c.symbol in varied.symbols else None for c in found]
-        mass, moment = float(sign) * parameters.mass.mass_prime, parameters.mass.mass_moment_prime
-        deviation = np.column_stack([np.zeros(len(deviations)) if k is None else deviations[:, k] for k in at])
-        nominal, *rows = _index(np.vstack([np.zeros(4), deviation]) + values, mass, moment)
-        figure = Figure(name, float(nominal) if np.isfinite(nominal) else None, "1", DEFINITIONS[name])
-        out[name] = figure, np.array(rows), _why(found[0].symbol, found[3].symbol, values, at, varied, moment)
-    return out
-
-
-def _index(values: Array, mass: float, moment: float) -> Array:
-    force_slope, moment_slope, force_rate, moment_rate = values.T
-    with np.errstate(divide="ignore", invalid="ignore"):
-        return stability_index(force_slope, moment_slope, force_rate, moment_rate, mass, moment)
-
-
-def _why(
-    force: str, moment_rate: str, values: list[float], at: list[int | None], varied: Uncertain, moment: float
-) -> str:
-    if None in at:
-        return "a coefficient in it has no U95"
-    half = [0.0 if k is None else 2.0 * float(varied.deviation[k]) for k in at]
-    for label, size, u95 in ((force, values[0], half[0]), (f"{moment_rate} - xG'm'", values[3] - moment, half[3])):
-        if reaches_zero(size, u95):
-            return f"the interval of the denominator {label} = {size:.3g} +- {u95:.2g} contains zero"
-    return ""

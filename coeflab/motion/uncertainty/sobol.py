@@ -229,13 +229,8 @@ def pieces(n: int, replicates: int) -> list[int]:
     return [min(most, replicates - start) for start in range(0, replicates, most)]
 
 
-def draw_counts(n: int, replicates: int, seed: int) -> Array:
-    """How often each of n rows is drawn in each replicate, shape (replicates, n)."""
-    return _counts(np.random.default_rng(seed), n, replicates)
-
-
 def drawn_counts(n: int, replicates: int, seed: int) -> Iterator[Array]:
-    """`draw_counts` in `pieces`, for many rows."""
+    """How often each of n rows is drawn in each replicate, (replicates, n) in `pieces`."""
     rng = np.random.default_rng(seed)
     return (_counts(rng, n, size) for size in pieces(n, replicates))
 

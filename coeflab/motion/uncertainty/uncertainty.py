@@ -24,7 +24,9 @@ from coeflab.motion.manoeuvres import MANOEUVRES
 from coeflab.motion.marching import KERNELS, chosen_step, march_by_tolerance
 from coeflab.motion.trajectory import Ended, Trajectory
 from coeflab.motion.uncertainty.batches import Batch, Setup, Store, carried_out, figures_of, prepared, run_batch
-from coeflab.motion.uncertainty.draws import Uncertain, drawn, drawn_stability, unfelt
+from coeflab.motion.uncertainty.drawn_stability import drawn_stability
+from coeflab.motion.uncertainty.drawn_vehicles import drawn, unfelt
+from coeflab.motion.uncertainty.draws import Uncertain
 from coeflab.motion.uncertainty.sobol import SobolDesign, known_share, share_noise, sobol_design, sobol_indices
 from coeflab.motion.uncertainty.spread import MOST_LACKING, Importance, Spread, shares, spread
 from coeflab.motion.uncertainty.tests import group_share, tests_of

@@ -27,7 +27,7 @@ from coeflab.published.publication import Row, publication
 from coeflab.report.acceptance import Acceptance
 from coeflab.study.plan import read_plan
 from coeflab.vehicle.parameter_file import read_parameter_file
-from coeflab.vehicle.reference import Reference, read_references
+from coeflab.vehicle.published_values import Reference, read_references
 
 PAPER = publication("estimates")
 

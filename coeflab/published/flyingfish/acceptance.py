@@ -12,24 +12,14 @@ from coeflab.core.types import Array
 from coeflab.fits import FITS
 from coeflab.law.symbols import COMPONENTS, MOTIONS
 from coeflab.motion.dynamics import from_euler
-from coeflab.motion.marching import idle, integrated_forces
+from coeflab.motion.ensemble import idle, integrated_forces
 from coeflab.motion.trim.operating_point import OperatingPoint
 from coeflab.motion.vehicle import Vehicle, vehicle
 from coeflab.published.flyingfish.figures import figures
-from coeflab.published.flyingfish.model import (
-    CONSTANTS,
-    DEGREE,
-    MEDIA,
-    ROTORS,
-    RPM,
-    UNKNOWNS,
-    FlyingFish,
-    calibrated,
-    read_flyingfish,
-    steady_residuals,
-    trim,
-)
+from coeflab.published.flyingfish.model import CONSTANTS, MEDIA, ROTORS, FlyingFish, calibrated, read_flyingfish
 from coeflab.published.flyingfish.motions import EQUATION_48, EQUATION_50, compared, craft
+from coeflab.published.flyingfish.rotors import steady_residuals
+from coeflab.published.flyingfish.trims import DEGREE, RPM, UNKNOWNS, trim
 from coeflab.published.parameter_files import flyingfish_file
 from coeflab.published.publication import Row, publication
 from coeflab.report.acceptance import Acceptance, ComparedTable
@@ -161,12 +151,8 @@ def _constants(fish: FlyingFish, constants: Array) -> ComparedTable:
     return PAPER.table("constants", rows)
 
 
-def _left(fish: FlyingFish, constants: Array) -> Array:
-    return steady_residuals(fish.rotors, constants, fish.motion, fish.angles, fish.speeds)
-
-
 def _residuals(fish: FlyingFish, constants: Array) -> ComparedTable:
-    left = _left(fish, constants)
+    left = steady_residuals(fish.rotors, constants, fish.motion, fish.angles, fish.speeds)
     rows = tuple(
         Row(f"motion {row + 1}", name, "N" if k < 3 else "N m", 0.0, float(left[row, k]), FORCES if k < 3 else MOMENTS)
         for row in range(len(left))

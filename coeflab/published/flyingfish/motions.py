@@ -12,9 +12,9 @@ from coeflab.core.files import shipped
 from coeflab.core.types import Array
 from coeflab.identify.thruster import BenchTest, bench_test
 from coeflab.motion.dynamics import from_euler
+from coeflab.motion.ensemble import STILL, alone
 from coeflab.motion.manoeuvre import Manoeuvre, Phase, Until
 from coeflab.motion.manoeuvres.steady_motion import helix
-from coeflab.motion.marching import STILL, alone
 from coeflab.motion.media import through_media
 from coeflab.motion.simulators import SIMULATORS
 from coeflab.motion.trajectory import Trajectory
@@ -23,6 +23,8 @@ from coeflab.motion.trim.trim import trim as trimmed
 from coeflab.motion.vehicle import Vehicle, vehicle
 from coeflab.published.flyingfish import model
 from coeflab.published.flyingfish.equations import aerial_wrench, body_rates, damping, dash, earth_rates, rise, turned
+from coeflab.published.flyingfish.rotors import rotor_wrench, steady_residuals
+from coeflab.published.flyingfish.trims import EQUATIONS, UNKNOWNS, unknowns_of
 from coeflab.published.parameter_files import flyingfish_file
 from coeflab.published.publication import Row, publication
 from coeflab.report.acceptance import Basis, ComparedTable
@@ -83,18 +85,12 @@ def craft(fish: model.FlyingFish, rows: int | None = None) -> Craft:
         motion = fish.motion[row : row + 1]
 
         def left(x: Array) -> Array:
-            return model.steady_residuals(fish.rotors, constants, motion, x[None, :4], x[None, 4:], -1.0).ravel()
+            return steady_residuals(fish.rotors, constants, motion, x[None, :4], x[None, 4:], -1.0).ravel()
 
         return _nearest(fish, row, left)
 
     count = len(fish.motion) if rows is None else rows
     return Craft(fish, constants, water, air, np.array([by_equations(row) for row in range(count)]).reshape(-1, 8))
-
-
-def without_trims(fish: model.FlyingFish) -> tuple[ComparedTable, ...]:
-    """The tables that take a fraction of a second."""
-    c = craft(fish, 0)
-    return equations(c, "water"), equations(c, "air"), third(fish), surface(c)
 
 
 def compared(c: Craft) -> tuple[ComparedTable, ...]:
@@ -108,7 +104,7 @@ def compared(c: Craft) -> tuple[ComparedTable, ...]:
 def _nearest(fish: model.FlyingFish, row: int, left: Callable[[Array], Array], first: Array | None = None) -> Array:
     """Nan where there is no trim."""
     start = None if first is None else first.tolist()
-    found = operating_point(model.unknowns_of(fish, row), model.EQUATIONS, left, start, starts=0)
+    found = operating_point(unknowns_of(fish, row), EQUATIONS, left, start, starts=0)
     return np.asarray(found.found.point) if found.outcome.solved else np.full(8, np.nan)
 
 
@@ -134,7 +130,7 @@ def equations(c: Craft, medium: model.Medium) -> ComparedTable:
     rotors = c.fish.rotors
     if wet:
         thrust, torque = (a * speeds + b * speeds**2 for a, b in (rotors.thrust, rotors.torque))
-        push = model.rotor_wrench(tilts, thrust, torque, arm, c.fish.constants["rotor_height"], -1.0)
+        push = rotor_wrench(tilts, thrust, torque, arm, c.fish.constants["rotor_height"], -1.0)
     else:
         thrust, torque = (a * speeds + b * speeds**2 for a, b in (EQUATION_45, EQUATION_46))
         push = aerial_wrench(thrust, torque, arm)
@@ -201,7 +197,7 @@ def both_readings(c: Craft) -> ComparedTable:
         case = f"motion {row + 1}"
         rows.append(Row(case, "N left by the printed row", "N m", lever, float(left(printed)[5])))
         found = _nearest(fish, row, left, c.trims[row])
-        for i, name in enumerate(model.UNKNOWNS):
+        for i, name in enumerate(UNKNOWNS):
             unit, factor, within = ("deg", np.degrees(1.0), 1e-3) if i < 4 else ("rpm", 1.0, 1e-2)
             due, ours = float(factor * c.trims[row, i]), float(factor * found[i])
             rows.append(Row(case, name, unit, due, ours, within, Basis.CONSISTENCY))
@@ -217,7 +213,7 @@ def third(fish: model.FlyingFish) -> ComparedTable:
 
     def left(velocity: Array) -> Array:
         motion = np.array([[velocity[0], velocity[1], 0.0, 0.0, pitch]])
-        return model.steady_residuals(fish.rotors, constants, motion, angles, speeds)[0, [0, 2]]
+        return steady_residuals(fish.rotors, constants, motion, angles, speeds)[0, [0, 2]]
 
     from scipy.optimize import fsolve
 

@@ -4,17 +4,19 @@ from __future__ import annotations
 
 import numpy as np
 
-from coeflab.bodies.closed_forms import plate_coefficient
+from coeflab.bodies.closed_forms.parts import plate_coefficient
 from coeflab.core.machine import one_thread
 from coeflab.core.types import Array
 from coeflab.core.wording import THREE_LINES, grouped
 from coeflab.identify.tuning import Tuning, largest_correlations
 from coeflab.motion import steady_state
-from coeflab.motion.marching import idle, integrated_forces
+from coeflab.motion import steady_turns as planar_turns
+from coeflab.motion.ensemble import idle, integrated_forces
 from coeflab.motion.vehicle import vehicle
 from coeflab.published.huuv import tuning
 from coeflab.published.huuv.figures import paper_figures, tuning_figures
-from coeflab.published.huuv.five_dof import five_dof_file, read_five_dof
+from coeflab.published.huuv.five_dof import read_five_dof
+from coeflab.published.huuv.five_dof_file import five_dof_file
 from coeflab.published.huuv.five_dof_rows import dived, moving_rows, stated_rows
 from coeflab.published.huuv.model import MATLAB, TRACKER, Huuv, Turns, parameter_file, read_huuv, thrust
 from coeflab.published.publication import Row, publication
@@ -79,7 +81,7 @@ def turned(huuv: Huuv, file: ParameterFile) -> tuple[ComparedTable, ...]:
     """What needs neither a motion in time nor a fit to Fig. 17."""
     return (
         _solved(huuv),
-        _through_file(huuv, file),
+        PAPER.table("through_file", _rows(huuv, _by_file(huuv, file)[:, [0, 1, 5]])),
         _sides(huuv, file),
         _coriolis(huuv, file),
         _equations(huuv),
@@ -99,7 +101,10 @@ def _wrench(huuv: Huuv, turns: Turns) -> Array:
 
 def _rows(huuv: Huuv, found: Array) -> list[Row]:
     """Operating points beside velocities u v r."""
-    turns, ours = huuv.accepted, steady_state.SteadyTurns(found, np.ones(len(found), bool), np.ones(len(found), bool))
+    turns, ours = (
+        huuv.accepted,
+        planar_turns.SteadyTurns(found, np.ones(len(found), bool), np.ones(len(found), bool)),
+    )
     printed = np.column_stack([turns.figures * (1.0, np.degrees(1.0), 1.0), huuv.accepted_rate])
     computed = np.column_stack([found[:, 0], np.degrees(np.abs(ours.drift)), ours.radius, np.abs(found[:, 2])])
     names = (("u", "m/s"), ("|beta|", "deg"), ("R", "m"), ("|r|", "rad/s"))
@@ -112,7 +117,7 @@ def _rows(huuv: Huuv, found: Array) -> list[Row]:
 
 
 def _solved(huuv: Huuv) -> ComparedTable:
-    found = steady_state.steady_turns(huuv.theta, _wrench(huuv, huuv.accepted))
+    found = planar_turns.steady_turns(huuv.theta, _wrench(huuv, huuv.accepted))
     stable = "all are stable" if np.all(found.stable) else "some are not stable"
     return PAPER.table("steady_turns", _rows(huuv, found.velocity), stable=stable)
 
@@ -120,7 +125,7 @@ def _solved(huuv: Huuv) -> ComparedTable:
 def simulated_rows(huuv: Huuv) -> ComparedTable:
     """The steady turns after two minutes from rest."""
     times = np.array([0.0, LASTS])
-    ends = np.array([steady_state.run(huuv.theta, one, times)[-1] for one in _wrench(huuv, huuv.accepted)])
+    ends = np.array([planar_turns.run(huuv.theta, one, times)[-1] for one in _wrench(huuv, huuv.accepted)])
     return PAPER.table("simulated", _rows(huuv, ends), lasts=LASTS)
 
 
@@ -131,14 +136,10 @@ def _by_file(huuv: Huuv, file: ParameterFile) -> Array:
     return steady_state.steady_motions(result, steady_state.wrenches(result, commands))[0]
 
 
-def _through_file(huuv: Huuv, file: ParameterFile) -> ComparedTable:
-    return PAPER.table("through_file", _rows(huuv, _by_file(huuv, file)[:, [0, 1, 5]]))
-
-
 def _sides(huuv: Huuv, file: ParameterFile) -> ComparedTable:
     """Sizes alone would not notice a turn to the other side."""
     turning = huuv.accepted.right > huuv.accepted.left
-    solved = steady_state.steady_turns(huuv.theta, _wrench(huuv, huuv.accepted)).velocity
+    solved = planar_turns.steady_turns(huuv.theta, _wrench(huuv, huuv.accepted)).velocity
     rows = tuple(
         Row(where, "turns to port, v to starboard", "1", float(np.sum(turning)), float(np.sum(turning & (v > 0.0) & (r < 0.0))))
         for where, (v, r) in (("equations", solved[:, 1:].T), ("parameter file", _by_file(huuv, file)[:, [1, 5]].T))
@@ -149,12 +150,12 @@ def _sides(huuv: Huuv, file: ParameterFile) -> ComparedTable:
 def _coriolis(huuv: Huuv, file: ParameterFile) -> ComparedTable:
     """The products of velocities in the forces that are integrated, of the equations and of the parameter file."""
     velocity = np.random.default_rng(SEED).normal(size=(MOTIONS, 3))
-    inertial = steady_state.features(velocity)[0][:, :, steady_state.INERTIAL] @ huuv.theta[steady_state.INERTIAL]
+    inertial = planar_turns.features(velocity)[0][:, :, planar_turns.INERTIAL] @ huuv.theta[planar_turns.INERTIAL]
     moved = idle(vehicle(file, free=("u", "v", "r")))
     nu, level = np.zeros((MOTIONS, 6)), np.tile((1.0, 0.0, 0.0, 0.0), (MOTIONS, 1))
     nu[:, [0, 1, 5]] = velocity
     integrated = integrated_forces(moved, nu, level, np.zeros((MOTIONS, 6)))[..., [0, 1, 5]]
-    theory = steady_state.kirchhoff(huuv.theta, velocity)
+    theory = planar_turns.kirchhoff(huuv.theta, velocity)
     found = (
         ("equations", "force apart from Kirchhoff's", "N, N m", inertial - theory),
         ("equations", "power", "W", np.sum(inertial * velocity, axis=-1)),

@@ -11,7 +11,7 @@ from coeflab.core.types import Array
 from coeflab.core.wording import listed
 from coeflab.identify.tuning import Tuning
 from coeflab.identify.tuning_figures import Groups, agreement_figure, curves_figure
-from coeflab.motion.steady_state import steady_turns, turn_figures
+from coeflab.motion.steady_turns import steady_turns, turn_figures
 from coeflab.published.huuv.five_dof import FiveDof, assumed_body, elevator_laws, hull_laws, turning_laws
 from coeflab.published.huuv.five_dof_rows import SETS, Dive, with_masses
 from coeflab.published.huuv.model import MATLAB, TRACKER, Huuv, commands, thrust

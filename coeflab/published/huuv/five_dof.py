@@ -1,5 +1,4 @@
-"""The HUUV in five degrees of freedom, u v w q r, by the paper's equations 1-33 with their errata corrected, and as
-parameter file, where the roll is left undescribed, so that simulators hold it.
+"""The HUUV in five degrees of freedom by the paper's equations 1-33, errata corrected.
 
 Axes FRD from the centre of buoyancy; the roll is held. Velocities nu = (u, v, w, q, r)::
 
@@ -17,9 +16,8 @@ hold already: of the elevators only what the deflection adds counts, C(delta - a
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
-from math import comb
 from pathlib import Path
 from typing import Annotated, Any, Literal, get_args
 
@@ -30,19 +28,14 @@ from coeflab.bodies.body import Body
 from coeflab.bodies.readers import read_body
 from coeflab.bodies.shape import Cylinder, Parts, Plate
 from coeflab.core import declarations as takes
-from coeflab.core.axes import Datum
 from coeflab.core.errors import InputError
 from coeflab.core.files import shipped
-from coeflab.core.provenance import InputFile, sha256_of
 from coeflab.core.text.toml import read_toml
 from coeflab.core.types import Array, brief, locking
 from coeflab.core.units import STANDARD_GRAVITY
-from coeflab.formats.imported_file import stated_table
-from coeflab.law.added_mass import AddedMass, OtherMethod
-from coeflab.law.rigid_body import MassProperties, rigid_body_inertia
+from coeflab.law.rigid_body import rigid_body_inertia
 from coeflab.law.transforms import incidence
-from coeflab.published.huuv.model import Huuv, parameter_file, thrust
-from coeflab.vehicle.parameter_file import ParameterFile
+from coeflab.published.huuv.model import Huuv, thrust
 
 Masses = Literal["stated", "geometry"]
 AT = (0, 1, 2, 4, 5)  # u v w q r among u v w p q r
@@ -53,21 +46,6 @@ KINDS: Mapping[str, Any] = {
 }  # fmt: skip
 ELEVATOR = ("C_D0", "C_D2", "C_L1", "C_L3", "C_m1", "C_m3")
 BODY = "huuv_assumed"
-SOURCES = ("vehicle.toml", "turns.csv", "five_dof.toml")
-NOTES = (
-    "Horizontal plane: constants of vehicle.toml, tuned to the MATLAB half of Fig. 17 or chosen. Vertical plane: C_L, C_m and M_mq are "
-    "the horizontal laws over the paper's factor of 2, assumed; the paper prints no number of Figs. 12-16.",
-    "Elevators: db, both together, laws over delta - alpha of a synthetic table; the file takes V^2 where equations 15-17 have "
-    "V_xz^2 = V^2 cos^2(beta).",
-    "Sense of db: as in the paper, over delta - alpha, a positive angle turns the leading edge down and the trailing edge up, so that "
-    "+30 deg at alpha = 0 lifts less and turns the bow down. That is against coeflab's rule for planes on a body, hinge [0, 1, 0], "
-    "positive with trailing edges down; the sign is the paper's and is kept.",
-    "Weight 19 kg printed; buoyancy, z_CG and moments of inertia assumed. Roll is not described: p stays zero.",
-)
-MASSES = {
-    "stated": "m_x, m_y, m_yr and J_z of the steady turns, which the paper does not print; the rest by equations 28-32, radii assumed",
-    "geometry": "equations 28-32 as corrected of an assumed geometry: an illustration",
-}
 
 
 @brief
@@ -175,7 +153,7 @@ def simple_masses(body: Body, density: float) -> dict[str, float]:
     -----
     The paper gives the mast on its end no m_z and no k of its own to the plates' turning; both are left out here too.
     """
-    from coeflab.bodies.closed_forms import plate_coefficient
+    from coeflab.bodies.closed_forms.parts import plate_coefficient
 
     shape = body.require_shape()
     parts = shape.parts if isinstance(shape, Parts) else ()
@@ -198,9 +176,6 @@ def simple_masses(body: Body, density: float) -> dict[str, float]:
         "J_y": hull * long**2 / 12.0 + density * np.pi * rm**2 * ((r + tall) ** 3 - r**3) / 3.0 + ahead**2 * normal,
         "J_z": hull * long**2 / 12.0,
     }
-
-
-# ---- equation 1 ----------------------------------------------------------------------------------------------------
 
 
 def inertia(huuv: FiveDof) -> Array:
@@ -235,9 +210,6 @@ def restoring(huuv: FiveDof, pitch: Array) -> Array:
     return out
 
 
-# ---- equations 2-17 and 23-27 --------------------------------------------------------------------------------------
-
-
 def hull_laws(huuv: FiveDof, alpha: Array, beta: Array) -> dict[str, Array]:
     """C_D, C_S, C_L, C_m(alpha), C_m(beta) with density, area and length, N/(m/s)^2 and N m/(m/s)^2; C_D(0) once.
 
@@ -262,8 +234,9 @@ def pitch_slope(huuv: FiveDof) -> float:
 
 def turning_laws(huuv: FiveDof, q: Array, r: Array) -> tuple[Array, Array]:
     """M_mq and M_mr against the rates, N m."""
-    c = huuv.level.constants
-    return tuple((c["nr"] * x + c["nrr"] * x * np.abs(x)) / by for x, by in ((q, huuv.constants["tuned_by"]), (r, 1.0)))  # type: ignore[return-value]
+    c, by = huuv.level.constants, huuv.constants["tuned_by"]
+    pitching, yawing = (c["nr"] * x + c["nrr"] * x * np.abs(x) for x in (q, r))
+    return pitching / by, yawing
 
 
 def elevator_laws(huuv: FiveDof, angle: Array) -> tuple[Array, Array, Array]:
@@ -362,7 +335,7 @@ def steady(huuv: FiveDof, delta: Array, tau: Array, start: Array) -> tuple[Array
     """
     from scipy.optimize import root
 
-    from coeflab.motion.dynamics import linearised
+    from coeflab.motion.small_motions import linearised
 
     found, growth = np.full((len(start), 5), np.nan), np.full(len(start), np.nan)
     for i, (angle, push) in enumerate(zip(delta, tau, strict=True)):
@@ -381,95 +354,3 @@ def steady(huuv: FiveDof, delta: Array, tau: Array, start: Array) -> tuple[Array
         slopes = linearised(moving, np.array([u, v, w, 0.0, r, pitch]), np.ones(6))
         growth[i] = np.linalg.eigvals(slopes).real.max()
     return found, growth
-
-
-def five_dof_file(huuv: FiveDof) -> ParameterFile:
-    """Tables over incidence, rates and elevator angle, weight and buoyancy, thrusters, and the added mass of `FiveDof.added`."""
-    base, c, own = parameter_file(huuv.level), huuv.level.constants, huuv.constants
-    by, density, primes = own["tuned_by"], huuv.density, base.scaling
-    force, moment = (primes.unit(component, density) for component in "XN")
-    end, fastest, most = (huuv.level.chosen["largest_drift"], huuv.level.chosen["largest_rate"], own["largest_angle"])
-    result: dict[str, Any] = {
-        "form": "polynomial", "table": "five_dof.toml", "campaign": "HUUV, assumed",
-        "statements": ("Assumed, see five_dof.toml: neither points nor residuals.",),
-    }  # fmt: skip
-    attack, drift = ("rad", -end, end), ("rad", -end, end)
-
-    def power(variable: str, n: int) -> tuple[tuple[str, int, bool], ...]:
-        return ((variable, n, False),)
-
-    pressed = 0.5 * density * own["area"]
-    elevator = {
-        "C_D": (force, (0, 2), (own["C_D0"], own["C_D2"])),
-        "C_L": (force, (1, 3), (own["C_L1"], own["C_L3"])),
-        "C_m": (moment, (1, 3), tuple(own["length"] * own[f"C_m{n}"] + own["lever"] * own[f"C_L{n}"] for n in (1, 3))),
-    }
-    horizontal = [m.model_dump() for m in base.models if m.response != "C_D"]
-    models = (
-        stated_table(
-            "C_D", {"alpha": attack, "beta": drift},
-            {"1": ((), c["d0"]), "alpha^2": (power("alpha", 2), c["d2"]), "beta^2": (power("beta", 2), c["d2"])},
-            force, **result,
-        ),
-        *horizontal,
-        stated_table(
-            "C_L", {"alpha": attack},
-            {"alpha": (power("alpha", 1), c["s1"] / by), "alpha^3": (power("alpha", 3), c["s3"] / by)}, force, **result,
-        ),
-        stated_table(
-            "C_m", {"alpha": attack},
-            {"alpha": (power("alpha", 1), -pitch_slope(huuv)), "alpha^3": (power("alpha", 3), -c["n3"] / by)}, moment, **result,
-        ),
-        stated_table(
-            "M", {"q": ("rad/s", -fastest, fastest)}, {"q|q|": ((("q", 1, False), ("q", 1, True)), -c["nrr"] / by)}, 1.0,
-            unit="N*m", **result,
-        ),
-        *(
-            stated_table(
-                response, {"alpha": attack, "db": ("rad", -most, most)},
-                _effective(powers, [pressed * v for v in values]), unit, **result,
-            )
-            for response, (unit, powers, values) in elevator.items()
-        ),
-    )  # fmt: skip
-    centre = np.array([0.0, 0.0, own["centre_below"]])
-    provenance = base.provenance.model_copy(update={"notes": (*NOTES, MASSES[huuv.masses]), "inputs": _inputs()})
-    content = {
-        **base.model_dump(),
-        "name": "huuv_5dof" if huuv.masses == "stated" else "huuv_5dof_geometry",
-        "body": "HUUV",
-        "mass": MassProperties(c["m"], 0.0, own["pitch_inertia"], centre).primed(primes, density),
-        "models": models,
-        "added_mass": _added_mass(huuv),
-        "hydrostatics": {"volume": own["displaced"], "centre_of_buoyancy": (0.0, 0.0, 0.0)},
-        "surfaces": ({"control": "db", "limit": most},),
-        "thrusters": tuple(t.model_dump() for t in base.thrusters),
-        "provenance": provenance.model_dump(),
-    }
-    return ParameterFile.model_validate(content)
-
-
-def _effective(powers: Sequence[int], values: Sequence[float]) -> dict[str, Any]:
-    """Sum of values times (delta - alpha)^power - (-alpha)^power as products of db and alpha."""
-    out: dict[str, Any] = {}
-    for n, value in zip(powers, values, strict=True):
-        for k in range(n):
-            factors = tuple((v, p, False) for v, p in (("db", n - k), ("alpha", k)) if p)
-            symbol = " ".join(v if p == 1 else f"{v}^{p}" for v, p, _ in factors)
-            out[symbol] = (factors, value * comb(n, k) * (-1.0) ** k)
-    return out
-
-
-def _added_mass(huuv: FiveDof) -> AddedMass:
-    other = OtherMethod("assumed geometry, equations 28-32 as corrected", huuv.geometry)
-    words = (MASSES[huuv.masses],)
-    return AddedMass(
-        huuv.added, datum=Datum("cb"), body="HUUV", method="stated" if huuv.masses == "stated" else "primitives:huuv", statements=words, density=huuv.density,
-        others=(other,) if huuv.masses == "stated" else (),
-    )  # fmt: skip
-
-
-def _inputs() -> tuple[InputFile, ...]:
-    folder = shipped("cfd_data") / "huuv"
-    body = shipped("geometry") / BODY / "body.toml"
-    return (*(InputFile(n, sha256_of(folder / n)) for n in SOURCES), InputFile(f"{BODY}/body.toml", sha256_of(body)))

@@ -7,13 +7,13 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from coeflab.bodies.closed_forms import plate_added_mass
+from coeflab.bodies.closed_forms.parts import plate_added_mass
 from coeflab.bodies.shape import Cylinder, Parts, Plate
 from coeflab.core.types import Array, brief, locking
 from coeflab.law.rigid_body import momentum_force
 from coeflab.motion.dynamics import from_euler
 from coeflab.motion.simulation import simulate
-from coeflab.motion.steady_state import steady_turns, turn_figures
+from coeflab.motion.steady_turns import steady_turns, turn_figures
 from coeflab.motion.vehicle import vehicle
 from coeflab.published.huuv import five_dof
 from coeflab.published.huuv.model import MATLAB, Turns, commands, thrust

@@ -20,12 +20,13 @@ from coeflab.core.text.delimited import read_cells
 from coeflab.core.text.toml import read_toml
 from coeflab.core.types import Array, brief, locking
 from coeflab.core.version import VERSION
-from coeflab.formats.imported_file import stated_table
+from coeflab.formats.stated_table import stated_table
 from coeflab.law.added_mass import AddedMass
 from coeflab.law.rigid_body import MassProperties
 from coeflab.law.scaling import Conditions, Scaling
-from coeflab.motion.steady_state import COEFFICIENTS
-from coeflab.vehicle.parameter_file import SCHEMA_VERSION, ParameterFile
+from coeflab.motion.steady_turns import COEFFICIENTS
+from coeflab.vehicle.parameter_file import ParameterFile
+from coeflab.vehicle.schema_versions import SCHEMA_VERSION
 
 KINDS: Mapping[str, Any] = {"m": takes.Mass, "mx": takes.Mass, "my": takes.Mass, "inertia": takes.Inertia}
 CHOSEN: Mapping[str, Any] = {
@@ -67,7 +68,7 @@ class Huuv:
     Attributes
     ----------
     constants : mapping
-        Those of `coeflab.motion.steady_state.COEFFICIENTS`, then ``slope``, ``intercept`` and ``arm`` of the thrusters.
+        Those of `coeflab.motion.steady_turns.COEFFICIENTS`, then ``slope``, ``intercept`` and ``arm`` of the thrusters.
     printed_intercept, dead_zone : float
     reverse : (float, float)
         Intercept and slope of the thrust astern.

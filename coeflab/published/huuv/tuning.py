@@ -10,7 +10,8 @@ import numpy as np
 
 from coeflab.core.texts import remark
 from coeflab.core.types import Array
-from coeflab.identify.output_error import Estimate, Problem, estimate, examine, problem
+from coeflab.identify.output_error import Estimate, estimate, examine
+from coeflab.identify.output_problem import Problem, problem
 from coeflab.identify.tuning import (
     TunedQuantity,
     Tuning,
@@ -20,7 +21,7 @@ from coeflab.identify.tuning import (
     together_in_words,
     tuned_parameters,
 )
-from coeflab.motion.steady_state import COEFFICIENTS, sensitivities, steady_turns, turn_figures
+from coeflab.motion.steady_turns import COEFFICIENTS, sensitivities, steady_turns, turn_figures
 from coeflab.published.huuv.model import MATLAB, TRACKER, Huuv, Turns, thrust, thrust_rates
 from coeflab.published.publication import Row, publication
 from coeflab.report.acceptance import Basis, ComparedTable

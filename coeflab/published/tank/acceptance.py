@@ -9,7 +9,8 @@ from pathlib import Path
 
 import numpy as np
 
-from coeflab.bodies.closed_forms import ellipsoid_added_mass, graded_nodes, meridian_integrals, spheroid_munk_slope
+from coeflab.bodies.closed_forms.ellipsoid import ellipsoid_added_mass, spheroid_munk_slope
+from coeflab.bodies.closed_forms.revolution import graded_nodes, meridian_integrals
 from coeflab.bodies.fin_lift import LIFT_LOSS, low_aspect_lift_slope
 from coeflab.core.errors import InputError
 from coeflab.core.files import shipped

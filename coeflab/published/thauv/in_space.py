@@ -20,7 +20,7 @@ from coeflab.core.files import shipped
 from coeflab.core.provenance import InputFile, sha256_of
 from coeflab.core.types import Array
 from coeflab.fits.glide_polar import series
-from coeflab.formats.imported_file import Law, Stated, imported_file
+from coeflab.formats.stated_file import Law, Stated, stated_file
 from coeflab.glider.glide import GlideRun, steady_glides, steady_spirals
 from coeflab.glider.glider import Glider, GliderPhase
 from coeflab.glider.space import SpaceBody, Spiral, cruise, out_of_balance, pushed, steady_spiral, unexplained_in_space
@@ -213,7 +213,7 @@ def dive_file(glider: Glider, phase: GliderPhase, name: str) -> ParameterFile:
     )  # fmt: skip
     folder = Path(str(shipped("cfd_data") / "thauv"))
     source = f"{glider.name.removeprefix('thauv_')}.toml"
-    file = imported_file(stated, [InputFile(f"thauv/{source}", sha256_of(folder / source))], ("thauv",))
+    file = stated_file(stated, [InputFile(f"thauv/{source}", sha256_of(folder / source))], ("thauv",))
     rest_state = ParameterHydrostatics(
         volume=(masses.total - phase.net_mass) / at.density, centre_of_buoyancy=(0.0, 0.0, 0.0), gravity=glider.gravity
     )

@@ -9,7 +9,7 @@ import numpy as np
 from coeflab.arm import kane
 from coeflab.arm.chain import FLU, Chain, in_frame_0
 from coeflab.arm.motion import at_rest
-from coeflab.bodies.closed_forms import ellipsoid_added_mass
+from coeflab.bodies.closed_forms.ellipsoid import ellipsoid_added_mass
 from coeflab.core.machine import one_thread
 from coeflab.core.types import Array
 from coeflab.law.transforms import denavit_hartenberg

@@ -19,7 +19,7 @@ from coeflab.arm.figures import hull_of
 from coeflab.arm.kane import bias, partial_velocities, pose
 from coeflab.arm.readers.arm import read
 from coeflab.arm.thrusters import TorqueThruster, VoltageThruster
-from coeflab.bodies.closed_forms import cylinder_added_mass
+from coeflab.bodies.closed_forms.parts import cylinder_added_mass
 from coeflab.core.files import shipped
 from coeflab.core.types import Array
 

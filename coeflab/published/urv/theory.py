@@ -14,7 +14,7 @@ from coeflab.arm.thrusters import (
     Thruster,
     TorqueThruster,
     VoltageThruster,
-    require_all_directions,
+    thrust_allocation,
     thruster_matrix,
 )
 from coeflab.core.types import Array
@@ -221,7 +221,7 @@ def propulsion() -> ComparedTable:
     apart = thruster_matrix(thrusters) @ thrusts - summed
     rows.append(Row.none("thruster matrix", "force and moment apart from the sum", "N, N m", apart))
     wanted = np.array([5.0, -3.0, 2.0, 1.0, -4.0, 6.0])
-    given = thruster_matrix(thrusters) @ (require_all_directions(thrusters) @ wanted)
+    given = thruster_matrix(thrusters) @ (thrust_allocation(thrusters) @ wanted)
     rows.append(
         Row.none("pseudo-inverse", "force and moment apart from what is wanted", "N, N m", given - wanted, 1e-9)
     )

@@ -1,4 +1,4 @@
-"""A body, and a vehicle estimated from its shape, for machines."""
+"""A body, its simplification, and a vehicle estimated from its shape, for machines."""
 
 from __future__ import annotations
 
@@ -9,11 +9,15 @@ from numpy.typing import NDArray
 
 from coeflab.bodies.mesh.mesh import TriangleMesh
 from coeflab.bodies.mesh.particulars import mesh_statements
+from coeflab.bodies.simplify.part_file import form_keys
+from coeflab.bodies.simplify.simplification import RULES
 from coeflab.formats.loss_tables import in_short
+from coeflab.law.symbols import MOTIONS
 from coeflab.report.as_json.motions import carried
 
 if TYPE_CHECKING:
     from coeflab.bodies.body import Body
+    from coeflab.bodies.simplify.simplification import Simplification
     from coeflab.law.added_mass import AddedMass
     from coeflab.study.study import Study
 
@@ -103,3 +107,39 @@ def from_shape(study: Study) -> dict[str, Any]:
         ],
         "refused": [str(r.why) for r in study.refused],
     }  # fmt: skip
+
+
+def simplification(found: Simplification) -> dict[str, Any]:
+    """Everything that the tables show, in SI."""
+    parts = [
+        {
+            "name": p.part.name, "form": form_keys(p.part.form)[0], "sizes": form_keys(p.part.form)[1],
+            "centre": p.part.centre.tolist(), "rotation": p.part.rotation.tolist(),
+            "mesh_volume": p.volume, "misfit": p.likeness.misfit, "shared": p.likeness.shared, "volume": p.part.form.volume, "volume_error": p.volume_error,
+            "projected_area_errors": p.projected_errors.tolist(), "length_error": p.length_error,
+            "class": p.likeness.kind, "stand_in": not p.likeness.clear, "look_at": list(p.poor),
+            "remarks": list(p.remarks),
+        }
+        for p in found.parts
+    ]  # fmt: skip
+    return {
+        "body": found.body.name,
+        "parts": parts,
+        "mesh_volume": sum(p.volume for p in found.parts) + found.unassigned,
+        "volume": found.shape.volume,
+        "unassigned": found.unassigned,
+        "mesh_centre_of_volume": found.mesh.centre_of_volume.tolist(),
+        "centre_of_volume": found.shape.centre_of_volume.tolist(),
+        "mesh_projected_areas": found.mesh.integrals.projected.tolist(),
+        "projected_areas": found.projected.tolist(),
+        "against_mesh": None
+        if found.shape.agreement is None
+        else dict(zip(MOTIONS, found.shape.agreement.entries, strict=True)),
+        "mesh_error": None if found.shape.agreement is None else found.shape.agreement.error,
+        "recommended": found.recommended,
+        "advice": found.advice,
+        "failures": list(found.failures),
+        "status": "failed" if found.failures else "ok",
+        "rules": list(RULES),
+        "statements": list(found.statements),
+    }

@@ -7,10 +7,11 @@ from typing import Any
 
 from coeflab.core.finding import Finding
 from coeflab.core.wording import finite
-from coeflab.fits.results.fit_result import Pooling
 from coeflab.fits.results.fitted_model import FittedModel
 from coeflab.fits.results.oscillation import Oscillation
-from coeflab.formats.export import Export, Loss
+from coeflab.fits.results.pooling import Pooling
+from coeflab.formats.export import Export
+from coeflab.formats.loss import Loss
 from coeflab.law.coefficient import Coefficient
 from coeflab.law.symbols import primed
 from coeflab.report.acceptance import Acceptance, Held, held, held_of_study

@@ -1,13 +1,7 @@
-"""A body of parts in three views and obliquely, with the mesh that it stands for around it.
-
-One orthographic view of a body on paper: parts solid and shaded, the mesh behind them, over them and as an outline.
-
-Axes with ticks in metres under and left of a view along a body axis.
-"""
+"""A body of parts in three views and obliquely, with the mesh that it stands for around it."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -15,233 +9,19 @@ from matplotlib.axes import Axes
 from matplotlib.legend_handler import HandlerBase
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch, PathPatch, Polygon
-from matplotlib.path import Path
 
-from coeflab.bodies.mesh import solids as silhouette
+from coeflab.bodies.mesh import silhouettes
 from coeflab.bodies.mesh.mesh import TriangleMesh
-from coeflab.bodies.mesh.solids import Surface
 from coeflab.bodies.shape import OTHER, Part, Parts
-from coeflab.core.types import Array, dataclass
+from coeflab.core.types import Array
 from coeflab.report.document import Figure
-from coeflab.report.figures import body_scene
+from coeflab.report.figures import part_pictures
+from coeflab.report.figures.body_view import BEHIND, HATCH, STRIPE, Sheet, View, outline_path
 from coeflab.report.figures.palette import COLOURS
+from coeflab.report.figures.rulers import BELOW, LEFT, rulers
 from coeflab.report.figures.svg import paper, settings, svg_text
 from coeflab.report.notation import as_users_wrote
 from coeflab.report.texts import text_of
-
-LIGHT = np.array([-0.35, 0.65, 0.67]) / np.linalg.norm([-0.35, 0.65, 0.67])
-SHADES, SHADE = (0.15, 0.3, 0.45, 0.6, 0.75, 0.9), 0.1
-BEHIND, FILM = 0.45, 0.3
-EDGE_ON = 1e-6
-PALE, HATCH, STRIPE = 0.5, 8.0, 2.0  # the last two in points
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class View:
-    """A direction to look in.
-
-    Attributes
-    ----------
-    title : str
-    axes : (3, 3) array
-        Rows are the picture's right, up and toward the viewer, in FRD.
-    """
-
-    title: str
-    axes: Array
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class Sheet:
-    """A view at its place on the paper.
-
-    Attributes
-    ----------
-    axes : Axes
-        Whose units are points.
-    view : View
-    scale : float
-        Points per metre.
-    move : (2,) array
-        What is added to scaled coordinates, points.
-    extent : float
-        Largest size of what is drawn, m.
-    """
-
-    axes: Axes
-    view: View
-    scale: float
-    move: Array
-    extent: float
-
-    @property
-    def frame(self) -> Array:
-        """(2, 3) from metres in FRD to points right and up."""
-        return np.asarray(self.view.axes[:2] * self.scale)
-
-    def on_paper(self, points: Array) -> Array:
-        """(..., 2) places of (..., 3) points."""
-        return np.asarray(points @ self.frame.T + self.move)
-
-    def body(self, shape: Parts, mesh: Surface | None) -> None:
-        """Draw the mesh and the parts, those nearer to the viewer later."""
-        outline = None if mesh is None else silhouette.mesh_outline(*mesh, self.frame)
-        if outline is not None:
-            self._fill(outline, "band", BEHIND)
-        depth = [round(float(p.centre @ self.view.axes[2]), 9) for p in shape.parts]
-        for i in sorted(range(len(depth)), key=lambda i: (depth[i], i)):
-            part = shape.parts[i]
-            self.part(
-                body_scene.part_facets(part),
-                body_scene.COLOUR_OF[body_scene.form_name(part.form)],
-                body_scene.is_poor(part),
-                body_scene.is_convex(part.form),
-            )
-        if outline is not None:
-            self._fill(outline, "band", FILM)
-            self._line(outline, "ink", 0.9)
-
-    def outline(self, mesh: Surface) -> None:
-        """Draw a surface as a filled outline."""
-        draw_outline(self.axes, mesh, self.frame, self.move)
-
-    def part(self, facets: Array, colour: str, poor: bool, convex: bool) -> None:
-        """Draw (n, 4, 3) facets, those that look toward the viewer; poor ones striped, convex ones by their outline."""
-        if convex:
-            whole = silhouette.convex_outline(facets.reshape(-1, 3), self.frame)
-        else:
-            toward = body_scene.normals(facets) @ self.view.axes[2] > 1e-9
-            whole = silhouette.facets_outline(facets[toward] @ self.frame.T)
-        if whole.area() <= EDGE_ON * (self.scale * self.extent) ** 2:
-            ends = self.on_paper(facets.reshape(-1, 3))
-            along = ends @ np.linalg.eigh(np.cov(ends.T))[1][:, 1]
-            far = ends[[int(np.argmin(along)), int(np.argmax(along))]]
-            self.axes.plot(*far.T, color=COLOURS[colour], linewidth=2.2, solid_capstyle="butt", zorder=2)
-            if poor:
-                self.axes.plot(*far.T, color=COLOURS["ink"], linewidth=2.2, linestyle=(0.0, (1.0, 1.5)), zorder=2)
-            return
-        if poor:
-            self._fill(whole, colour, PALE)
-            self._fill(silhouette.hatched(whole, HATCH, STRIPE), "ink", 1.0)
-            self._line(whole, "ink", 1.6)
-            return
-        self._fill(whole, colour, 1.0)
-        outward = body_scene.normals(facets) @ self.view.axes.T
-        dark = 1.0 - np.clip(outward @ LIGHT, 0.0, 1.0)
-        for level in SHADES:
-            seen = facets[(outward[:, 2] > 1e-9) & (dark > level)]
-            if len(seen):
-                self._fill(silhouette.facets_outline(seen @ self.frame.T), "ink", SHADE)
-        self._line(whole, colour, 0.8)
-
-    def _fill(self, outline: Any, colour: str, alpha: float) -> None:
-        path = outline_path(outline, self.move)
-        if path is not None:
-            self.axes.add_patch(PathPatch(path, facecolor=COLOURS[colour], edgecolor="none", alpha=alpha, zorder=2))
-
-    def _line(self, outline: Any, colour: str, width: float) -> None:
-        path = outline_path(outline, self.move)
-        if path is not None:
-            style: dict[str, Any] = {"facecolor": "none", "edgecolor": COLOURS[colour], "linewidth": width}
-            self.axes.add_patch(PathPatch(path, zorder=2, **style))
-
-
-def draw_outline(
-    axes: Axes, surface: Surface, frame: Array, move: Array | tuple[float, float] = (0.0, 0.0), palette: Mapping[str, str] = COLOURS,
-    digits: int = 2, sense: Sequence[float] = (1.0, 1.0),
-) -> None:  # fmt: skip
-    """A surface as a filled outline.
-
-    Parameters
-    ----------
-    axes : Axes
-    surface : Surface
-        Vertices, m, FRD, and faces.
-    frame : (2, 3) array
-        From metres to what the axes count, across and up.
-    move : (2,) array
-        Added to it.
-    palette : mapping of str to str
-        A colour for each name of `COLOURS`.
-    digits : int
-        To which places are rounded.
-    sense : (2,) sequence of float
-        Of what the axes are called: -1 where it grows against the frame.
-    """
-    path = outline_path(silhouette.mesh_outline(*surface, frame), move, digits, sense)
-    if path is not None:
-        fill: dict[str, Any] = {"facecolor": palette["band"], "edgecolor": "none", "alpha": BEHIND}
-        line: dict[str, Any] = {"facecolor": "none", "edgecolor": palette["ink"], "linewidth": 0.9}
-        for look in (fill, line):
-            axes.add_patch(PathPatch(path, zorder=2, **look))
-
-
-def outline_path(
-    outline: Any, move: Array | tuple[float, float] = (0.0, 0.0), digits: int = 2, sense: Sequence[float] = (1.0, 1.0)
-) -> Path | None:
-    """An outline as a path, moved by so much; None where there is none."""
-    rings = [np.round((ring + move) * sense, digits) for ring in silhouette.polygons(outline)]
-    return Path.make_compound_path(*(Path(np.vstack([r, r[:1]]), closed=True) for r in rings)) if rings else None
-
-
-LEFT, BELOW = 34.0, 24.0
-ACROSS, UP = 44.0, 20.0
-TICK, SMALL = 3.0, 7.0
-STEPS = (1.0, 2.0, 5.0, 10.0)
-
-
-def ticks(low: float, high: float, least: float) -> list[float]:
-    """Round values from low to high that are at least ``least`` apart: steps of 1, 2 or 5 times a power of ten."""
-    power = 10.0 ** np.floor(np.log10(least))
-    step = float(next(k * power for k in STEPS if k * power >= least * (1.0 - 1e-9)))
-    first, last = int(np.ceil(low / step - 1e-9)), int(np.floor(high / step + 1e-9))
-    return [float(f"{k * step:.12g}") for k in range(first, last + 1)]
-
-
-def rulers(sheet: Sheet, points: Array) -> None:
-    """Draw both axes of a view whose right and up lie along body axes.
-
-    Parameters
-    ----------
-    sheet : Sheet
-    points : (n, 3) array
-        What the view shows, m, FRD.
-    """
-    flat = sheet.on_paper(points)
-    (left, bottom), (right, top) = flat.min(axis=0), flat.max(axis=0)
-    for k, least in ((0, ACROSS), (1, UP)):
-        axis = int(np.argmax(np.abs(sheet.view.axes[k])))
-        sign = float(np.sign(sheet.view.axes[k, axis]))
-        values = points[:, axis]
-        at = [
-            (v, sheet.scale * sign * v + float(sheet.move[k]))
-            for v in ticks(float(values.min()), float(values.max()), least / sheet.scale)
-        ]
-        _rule(sheet, k, (left, right) if k == 0 else (bottom, top), bottom if k == 0 else left, at)
-        name = f"{'xyz'[axis]} [m]"
-        if k == 0:
-            _text(sheet, right, bottom - 22.0, name, "right")
-        else:
-            _text(sheet, left - LEFT, top + 7.0, name, "left")
-
-
-def _rule(sheet: Sheet, k: int, ends: tuple[float, float], edge: float, at: list[tuple[float, float]]) -> None:
-    """One axis: 0 under the view, 1 left of it."""
-    line = edge - 4.0
-    style: dict[str, Any] = {"color": COLOURS["muted"], "linewidth": 0.6, "zorder": 1}
-    sheet.axes.plot(*((ends, [line, line]) if k == 0 else ([line, line], ends)), **style)
-    for value, place in at:
-        ends_of_tick = [line, line - TICK]
-        sheet.axes.plot(*(([place, place], ends_of_tick) if k == 0 else (ends_of_tick, [place, place])), **style)
-        if k == 0:
-            _text(sheet, place, line - TICK - 7.0, f"{value:g}", "center")
-        else:
-            _text(sheet, line - TICK - 2.0, place - 2.5, f"{value:g}", "right")
-
-
-def _text(sheet: Sheet, x: float, y: float, text: str, place: str) -> None:
-    sheet.axes.text(x, y, text, ha=place, fontsize=SMALL, color=COLOURS["muted"])
-
 
 WIDTH, MARGIN, GAP, CAPTION, LABELS = 680.0, 14.0, 18.0, 27.0, 20.0
 TALLEST_VIEWS, TALLEST_OBLIQUE = 420.0, 300.0
@@ -275,8 +55,8 @@ def body_figure(name: str, shape: Parts, mesh: TriangleMesh | None, anchor: str)
     anchor : str
         Unique in the document.
     """
-    of_parts = [body_scene.part_facets(p).reshape(-1, 3) for p in shape.parts]
-    drawn = None if mesh is None else body_scene.picture_surface(mesh)
+    of_parts = [part_pictures.part_facets(p).reshape(-1, 3) for p in shape.parts]
+    drawn = None if mesh is None else part_pictures.picture_surface(mesh)
     points = np.concatenate([*of_parts, *([] if drawn is None else [drawn[0]])])
     size = np.maximum(np.ptp(points, axis=0), 1e-3 * float(np.ptp(points, axis=0).max()))
     scale = _scale(size)
@@ -331,9 +111,11 @@ def _placed(axes: Axes, view: View, points: Array, corner: tuple[float, float], 
 
 def _labels(sheet: Sheet, shape: Parts, between: tuple[float, float]) -> None:
     """Names of the poor stand-ins and of the largest parts over and under the view, in their order from left to right, with lines to the parts."""
-    size = [float(np.prod(np.sort(np.ptp(body_scene.part_facets(p).reshape(-1, 3), axis=0))[1:])) for p in shape.parts]
+    size = [
+        float(np.prod(np.sort(np.ptp(part_pictures.part_facets(p).reshape(-1, 3), axis=0))[1:])) for p in shape.parts
+    ]
     chosen = sorted(
-        sorted(range(len(size)), key=lambda i: (not body_scene.is_poor(shape.parts[i]), -size[i], i))[:LABELLED]
+        sorted(range(len(size)), key=lambda i: (not part_pictures.is_poor(shape.parts[i]), -size[i], i))[:LABELLED]
     )
     names = {i: _marked(shape.parts[i]) for i in chosen}
     at = {i: sheet.on_paper(shape.parts[i].centre) for i in chosen}
@@ -382,8 +164,8 @@ class _Stripes(HandlerBase):
         """Matplotlib gives legend, handle, descents, width, height, size of the letters and the transform."""
         _, handle, across, down, width, height, _, place = given
         corners = np.array([[0.0, 0.0], [width, 0.0], [width, height], [0.0, height]]) - (across, down)
-        frame = silhouette.ring(corners)
-        stripes = outline_path(silhouette.hatched(frame, HATCH, STRIPE))
+        frame = silhouettes.ring(corners)
+        stripes = outline_path(silhouettes.hatched(frame, HATCH, STRIPE))
         edge = Polygon(corners, transform=place)
         edge.update_from(handle)
         edge.set_transform(place)
@@ -395,11 +177,11 @@ class _Stripes(HandlerBase):
 
 
 def _legend(axes: Axes, shape: Parts, with_mesh: bool) -> None:
-    forms = {body_scene.form_name(p.form) for p in shape.parts}
+    forms = {part_pictures.form_name(p.form) for p in shape.parts}
     handles: list[Any] = [
-        Patch(facecolor=COLOURS[c], edgecolor="none", label=f) for f, c in body_scene.COLOUR_OF.items() if f in forms
+        Patch(facecolor=COLOURS[c], edgecolor="none", label=f) for f, c in part_pictures.COLOUR_OF.items() if f in forms
     ]
-    if any(body_scene.is_poor(p) for p in shape.parts):
+    if any(part_pictures.is_poor(p) for p in shape.parts):
         handles.append(_Poor(edgecolor=COLOURS["ink"], facecolor="none", linewidth=1.2, label="poor stand-in"))
     if with_mesh:
         handles.append(Line2D([], [], color=COLOURS["ink"], linewidth=0.9, label="outline of the mesh"))
@@ -420,7 +202,9 @@ def _legend(axes: Axes, shape: Parts, with_mesh: bool) -> None:
 
 
 def _caption(shape: Parts, mesh: TriangleMesh | None) -> str:
-    marked = " Striped: a poor stand-in for its piece of the mesh." if any(map(body_scene.is_poor, shape.parts)) else ""
+    marked = (
+        " Striped: a poor stand-in for its piece of the mesh." if any(map(part_pictures.is_poor, shape.parts)) else ""
+    )
     if mesh is None:
         return (
             "The parts of the body, coloured by form, in orthographic views at one scale; the oblique one is larger."
@@ -431,7 +215,7 @@ def _caption(shape: Parts, mesh: TriangleMesh | None) -> str:
 
 def _description(shape: Parts, mesh: TriangleMesh | None) -> str:
     parts = ", ".join(
-        f"{p.name} ({body_scene.form_name(p.form)}{body_scene.POOR if body_scene.is_poor(p) else ''})"
+        f"{p.name} ({part_pictures.form_name(p.form)}{part_pictures.POOR if part_pictures.is_poor(p) else ''})"
         for p in shape.parts
     )
     return f"Side, front, top and oblique views of {parts}" + (" with the outline of the mesh." if mesh else ".")

@@ -1,12 +1,6 @@
 """A body of parts, with the mesh around it, as a binary glTF file: equal input gives equal bytes.
 
 Format: Khronos, glTF 2.0 specification, sections 4 (binary layout in 4.4) and 3.9 (materials).
-
-What a picture of a body is made of: facets of its parts, the surface of its mesh, the colour of each form.
-
-Flat facets of simple forms about their own centres, for drawing; arrays in, arrays out.
-
-Facets are (n, 4, 3), m, counter-clockwise seen from outside; where two corners coincide the facet is a triangle.
 """
 
 from __future__ import annotations
@@ -19,122 +13,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from coeflab.bodies.mesh.mesh import TriangleMesh
-from coeflab.bodies.mesh.meshing import form_surface
-from coeflab.bodies.mesh.solids import Surface, simplified, solid, surface
-from coeflab.bodies.shape import CLASSES, Box, Cylinder, Ellipsoid, Faceted, Form, Part, Parts, Plate, Turned
+from coeflab.bodies.shape import Parts
 from coeflab.core.types import Array
 from coeflab.report.figures.palette import COLOURS
-
-AROUND, ALONG = 48, 24
-CORNERS = np.array([[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]])
-
-
-def lathe_facets(x: Array, radius: Array) -> Array:
-    """A body of revolution about x through (k,) stations and radii, x rising."""
-    angle = 2.0 * np.pi * np.arange(AROUND) / AROUND
-    ring = np.stack([np.zeros(AROUND), np.cos(angle), np.sin(angle)], axis=1)
-    rings = x[:, None, None] * np.array([1.0, 0.0, 0.0]) + radius[:, None, None] * ring
-    ahead = np.roll(rings, -1, axis=1)
-    facets = np.stack([rings[:-1], ahead[:-1], ahead[1:], rings[1:]], axis=2)
-    return np.asarray(facets.reshape(-1, 4, 3))
-
-
-def cylinder_facets(radius: float, length: float) -> Array:
-    """Side and both ends, the axis along x."""
-    half = length / 2.0
-    return lathe_facets(np.array([-half, -half, half, half]), np.array([0.0, radius, radius, 0.0]))
-
-
-def cut_cylinder_facets(radius: float, length: float, slices: int) -> Array:
-    """The same in so many slices, for what is seen in part."""
-    half, cap = length / 2.0, np.array([0.0, 0.5, 1.0]) * radius
-    x = np.concatenate([[-half, -half], np.linspace(-half, half, slices + 1), [half, half]])
-    return lathe_facets(x, np.concatenate([cap[:2], np.full(slices + 1, radius), cap[1::-1]]))
-
-
-def ellipsoid_facets(axes: Array) -> Array:
-    """An ellipsoid of (3,) semi-axes."""
-    angle = np.linspace(0.0, np.pi, ALONG + 1)
-    return np.asarray(lathe_facets(-np.cos(angle), np.sin(angle)) * axes)
-
-
-def box_facets(sides: Array) -> Array:
-    """A box of (3,) sides."""
-    out = []
-    for i in range(3):
-        face = np.zeros((4, 3))
-        face[:, i], face[:, (i + 1) % 3], face[:, (i + 2) % 3] = 1.0, CORNERS[:, 0], CORNERS[:, 1]
-        out += [face, -face[::-1]]
-    return np.array(out) * sides / 2.0
-
-
-def plate_facets(chord: float, span: float) -> Array:
-    """Both sides of a plate across z."""
-    face = np.column_stack([CORNERS * [chord, span], np.zeros(4)]) / 2.0
-    return np.array([face, face[::-1]])
-
-
-def normals(facets: Array) -> Array:
-    """(n, 3) unit normals; zero where a facet has no area."""
-    across = np.cross(facets[:, 2] - facets[:, 0], facets[:, 3] - facets[:, 1])
-    size = np.linalg.norm(across, axis=1, keepdims=True)
-    return np.asarray(across / np.where(size > 0.0, size, 1.0))
-
-
-MOST_FACES = 20_000
-COLOUR_OF = {
-    "cylinder": "a", "revolution": "a", "plate": "b", "finned": "b", "ellipsoid": "c", "tube": "c", "box": "d", "bar": "d",
-    "mesh": "band",
-}  # fmt: skip
-DRAWN = 2_000
-POOR = ", a poor stand-in"
-
-
-def form_name(form: Form) -> str:
-    """``cylinder``, ``plate``, ``ellipsoid``, ``box``, ``bar``, ``tube``, ``revolution``, ``finned`` or ``mesh``."""
-    return CLASSES[type(form)]
-
-
-def is_convex(form: Form) -> bool:
-    """Whether its outline is that of its corners."""
-    return isinstance(form, Cylinder | Plate | Box | Ellipsoid)
-
-
-def is_poor(part: Part) -> bool:
-    """Whether it is a poor stand-in for its piece of a mesh, which every picture marks."""
-    return part.fit is not None and bool(part.fit.poor)
-
-
-def part_facets(part: Part) -> Array:
-    """(n, 4, 3) facets, m, FRD, from the datum."""
-    form = part.form
-    if isinstance(form, Cylinder):
-        own = cylinder_facets(form.radius, form.length)
-    elif isinstance(form, Plate):
-        own = plate_facets(form.chord, form.span)
-    elif isinstance(form, Box):
-        own = box_facets(form.sides)
-    elif isinstance(form, Ellipsoid):
-        own = ellipsoid_facets(form.axes)
-    elif isinstance(form, Turned):
-        own = lathe_facets(
-            np.array([form.stations[0], *form.stations, form.stations[-1]]), np.array([0.0, *form.radii, 0.0])
-        )
-    else:
-        vertices, faces = form_surface(form, max(DRAWN, len(form.mesh.faces)) if isinstance(form, Faceted) else DRAWN)
-        own = vertices[faces[:, [0, 1, 2, 2]]]
-    return np.asarray(own @ part.rotation.T + part.centre)
-
-
-def picture_surface(mesh: TriangleMesh) -> Surface:
-    """Vertices and faces of a mesh, simplified to 20,000 faces where it has more and is closed."""
-    if len(mesh.faces) <= MOST_FACES:
-        return mesh.vertices, mesh.faces
-    try:
-        return surface(simplified(solid(mesh.vertices, mesh.faces), MOST_FACES)[0])
-    except ValueError:
-        return mesh.vertices, mesh.faces
-
+from coeflab.report.figures.part_pictures import COLOUR_OF, POOR, form_name, is_poor, part_facets, picture_surface
 
 Indices = NDArray[np.int64]
 FLOAT, UNSIGNED, VERTICES, ELEMENTS = 5126, 5125, 34962, 34963

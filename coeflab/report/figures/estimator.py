@@ -17,12 +17,13 @@ from coeflab.fits.results.fit_result import Sweep
 from coeflab.law.symbols import primed
 from coeflab.report.document import Figure, Series
 from coeflab.report.figures import series
+from coeflab.report.figures.artists import strokes
 from coeflab.report.figures.palette import COLOURS, power_of_ten, recoloured
 from coeflab.report.figures.panel import BOTTOM, TOP, drawing, legend, panel
-from coeflab.report.figures.svg import settings, strokes, svg_text
+from coeflab.report.figures.svg import settings, svg_text
 from coeflab.report.notation import as_users_wrote
 from coeflab.report.texts import text_of
-from coeflab.vehicle.reference import Comparison
+from coeflab.vehicle.published_values import Comparison
 
 SIDESTEP = 0.011
 PLUS_MINUS = "±"
@@ -60,7 +61,8 @@ def estimator_figure(sweep: Sweep, published: tuple[Comparison, ...], anchor: st
     drawn = _drawn(sweep)
     largest = max((float(d.window.max()) for d in drawn), default=0.0) or 1.0
     reach = float(series.on_axis(sweep, np.array([largest]))[0])
-    across = "largest angle used  [deg]" if series.is_in_degrees(sweep) else f"largest |{sweep.variable}'| used  [-]"
+    unit = "deg" if series.is_in_degrees(sweep) else "prime"
+    across = text_of(f"estimator_figure.across_{unit}", variable=sweep.variable)
     title, description = f"{name}, {sweep.campaign}: what other forms would have said", _description(sweep, published)
     with settings():
         figure = drawing()

@@ -15,7 +15,7 @@ from coeflab.core.text.csv_rows import csv_text
 from coeflab.core.text.toml import read_text
 from coeflab.core.texts import input_error
 from coeflab.report.document import Figure
-from coeflab.report.figures import svg
+from coeflab.report.figures import svg, svg_file
 from coeflab.report.printable import CLOCK
 
 PAGE = b'#set page(width: auto, height: auto, margin: 0pt)\n#image(bytes(sys.inputs.svg), format: "svg")\n'
@@ -68,8 +68,8 @@ def styled(file: str | Path | None) -> Iterator[None]:
 
 def drawing(figure: Figure) -> bytes:
     """The drawing of a figure as an SVG file of its own, its colours as they stand."""
-    across, up = svg.size_of(figure.svg)
-    text = svg.plain(figure.svg)
+    across, up = svg_file.size_of(figure.svg)
+    text = svg_file.plain(figure.svg)
     return text.replace("<svg ", f'<svg width="{across:g}pt" height="{up:g}pt" style="background:#fff" ', 1).encode()
 
 

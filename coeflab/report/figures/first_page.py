@@ -21,10 +21,11 @@ from coeflab.fits.results.fit_result import Sweep
 from coeflab.law.symbols import primed
 from coeflab.report.acceptance import Acceptance, share
 from coeflab.report.document import AnswerRow, Figure, Series
+from coeflab.report.figures.artists import bare, label, strokes, text_width
 from coeflab.report.figures.palette import COLOURS, power_of_ten
 from coeflab.report.figures.panel import SIZE, Range, framed_legend, limits, tick_texts, ticks
 from coeflab.report.figures.series import curve, numbers, points, tagged
-from coeflab.report.figures.svg import POINTS, bare, label, settings, strokes, svg_text, text_width
+from coeflab.report.figures.svg import POINTS, settings, svg_text
 from coeflab.report.figures.sweep import fine_curve
 from coeflab.report.notation import as_users_wrote
 from coeflab.report.texts import text_of
@@ -75,7 +76,7 @@ def slope_figure(sweep: Sweep, row: AnswerRow, published: str = "", at: float | 
     rows = -(-(len(sides) + bool(row.u95) + (at is not None)) // 2)
     with settings():
         figure, axes = _drawing(
-            _left_of(up), 8.0, rows, across=(0.0, 1.04 * reach), up=up, name_across=across,
+            24.0 + max(text_width(text, SIZE) for text in tick_texts(ticks(up, 5))), 8.0, rows, across=(0.0, 1.04 * reach), up=up, name_across=across,
             name_up=f"{quotient}{power}",
         )  # fmt: skip
         handles, series = _sides(axes, sides, x, y, sweep, factor)
@@ -280,11 +281,6 @@ def _label(r: AnswerRow, by: float, columns: Sequence[str]) -> str:
         ours += f" +- {r.u95 / abs(by):.2f}"
     each = [f"{c} {p / by:.2f}" for c, p in zip(columns, r.published, strict=True) if p is not None]
     return listed([ours, *each])
-
-
-def _left_of(up: Range) -> float:
-    """Room for the texts of the upright axis and its name."""
-    return 24.0 + max(text_width(text, SIZE) for text in tick_texts(ticks(up, 5)))
 
 
 def _drawing(

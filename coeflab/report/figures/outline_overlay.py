@@ -9,7 +9,7 @@ import numpy as np
 
 from coeflab.bodies.outline import Foil, Outline, RingWing, Sections
 from coeflab.core.types import Array
-from coeflab.report.figures.body import Sheet
+from coeflab.report.figures.body_view import Sheet
 from coeflab.report.figures.palette import COLOURS
 
 STYLES = {  # colour, line, words

@@ -21,9 +21,10 @@ from matplotlib.ticker import MaxNLocator
 from matplotlib.transforms import Affine2D
 
 from coeflab.core.types import Array
+from coeflab.report.figures.artists import bare, label, strokes, text_width
 from coeflab.report.figures.palette import COLOURS
 from coeflab.report.figures.series import LEGEND, SERIES, SWATCH
-from coeflab.report.figures.svg import POINTS, bare, label, strokes, text_width
+from coeflab.report.figures.svg import POINTS
 
 SIZE, ROW = 8.75, 12.2
 SAMPLE, PAD, APART, HIGH, DEEP = 2.5 * SIZE, 0.6 * SIZE, SIZE, 0.7 * SIZE, 2.1

@@ -8,7 +8,7 @@ import numpy as np
 from matplotlib.axes import Axes
 
 from coeflab.core.types import Array
-from coeflab.motion.steady_state import RootLocus
+from coeflab.motion.root_locus import RootLocus
 from coeflab.report.document import Figure, Series
 from coeflab.report.figures.palette import COLOURS
 from coeflab.report.figures.panel import BOTTOM, GAP, drawing, legend, limits, panel

@@ -1,36 +1,20 @@
-"""Matplotlib figures as SVG text: equal input gives equal bytes, and the page that holds it sets the colours.
-
-What a drawing is made of where Matplotlib's own way costs most of the time: axes without ticks, texts, many strokes.
-
-Figures as one SVG file that needs no page: white ground, colours in place of the page's variables, titles above.
-"""
+"""Matplotlib figures as SVG text: equal input gives equal bytes, and the page that holds it sets the colours."""
 
 from __future__ import annotations
 
 import io
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
-from functools import lru_cache
 from html import escape, unescape
-from typing import Any, Literal
+from typing import Any
 
 import matplotlib as mpl
-import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.axis import XAxis, YAxis
-from matplotlib.backend_bases import RendererBase
-from matplotlib.colors import to_rgba
 from matplotlib.figure import Figure
-from matplotlib.font_manager import FontProperties
-from matplotlib.lines import Line2D
-from matplotlib.text import Text
-from matplotlib.textpath import text_to_path
-from numpy.typing import ArrayLike
 
-from coeflab.report.document import Figure as Drawing
 from coeflab.report.figures.palette import COLOURS
-from coeflab.report.notation import drawn
+from coeflab.report.markup import drawn
 from coeflab.report.printable import visible
 
 POINTS = 72.0
@@ -168,85 +152,6 @@ def _without_bare_groups(text: str) -> str:
     return re.sub(r"<g>\n?|<g [^>]*[^/]>|</g>\n?", keep, text)
 
 
-Align = Literal["left", "center", "right"]
-
-
-class _Unmarked:
-    """An axis whose ticks are never made: nothing here draws them."""
-
-    def grid(self, *_: object, **__: object) -> None: ...
-
-    def set_tick_params(self, *_: object, **__: object) -> None: ...
-
-    def set_clip_path(self, *_: object, **__: object) -> None: ...
-
-
-class _Across(_Unmarked, XAxis):
-    pass
-
-
-class _Up(_Unmarked, YAxis):
-    pass
-
-
-class _Bare(Axes):
-    def _gen_axes_spines(self) -> dict[str, Any]:
-        return {}
-
-    def _init_axis(self) -> None:
-        self.xaxis, self.yaxis = _Across(self, clear=False), _Up(self, clear=False)
-
-
-def bare(figure: Figure, place: tuple[float, float, float, float]) -> Axes:
-    """Axes without ticks, spines and labels, ``(left, bottom, width, height)`` in fractions of the figure."""
-    axes = _Bare(figure, place)
-    axes.set_axis_off()
-    return figure.add_axes(axes)
-
-
-class _Label(Text):
-    """One line on its baseline: the renderer of SVG needs no more than the point that it hangs on."""
-
-    def draw(self, renderer: RendererBase) -> None:
-        renderer.open_group("text", self.get_gid())
-        gc = renderer.new_gc()
-        gc.set_foreground(to_rgba(self.get_color()), isRGBA=True)
-        x, y = self.get_transform().transform(self.get_position())
-        y = renderer.get_canvas_width_height()[1] - y
-        font = self.get_fontproperties()
-        renderer.draw_text(gc, x, y, self.get_text(), font, self.get_rotation(), ismath=False, mtext=self)
-        gc.restore()
-        renderer.close_group("text")
-
-
-def label(
-    figure: Figure, x: float, y: float, text: str, align: Align = "center", *, shown: bool = True, **look: Any
-) -> Text:
-    """A line of text, its baseline at a point in fractions of the figure; not ``shown``: another artist draws it."""
-    result = _Label(x, y, text, horizontalalignment=align, rotation_mode="anchor", transform=figure.transFigure, **look)
-    if shown:
-        figure.add_artist(result)
-    else:
-        result.set_figure(figure)
-    return result
-
-
-@lru_cache(1 << 12)
-def text_width(text: str, size: float) -> float:
-    """Width of a line of text, points."""
-    wide, _, _ = text_to_path.get_text_width_height_descent(text, FontProperties(size=size), False)
-    return float(wide)
-
-
-def strokes(axes: Axes, x: Sequence[ArrayLike], y: Sequence[ArrayLike], **look: Any) -> Line2D:
-    """Straight strokes as one line: ``x`` and ``y`` hold their first and their last ends."""
-    gap = np.full(max(np.size(v) for v in (*x, *y)), np.nan)
-    along, up = (np.column_stack([*(np.broadcast_to(v, gap.shape) for v in ends), gap]).ravel() for ends in (x, y))
-    line = Line2D(along, up, solid_capstyle="butt", dash_capstyle="butt", **look)
-    axes.add_artist(line)
-    return line
-
-
 def paper(width: float, height: float) -> tuple[Figure, Axes]:
     """An empty figure with axes over all of it that count in points."""
     figure = Figure(figsize=(width / POINTS, height / POINTS))
@@ -254,64 +159,3 @@ def paper(width: float, height: float) -> tuple[Figure, Axes]:
     axes.set_axis_off()
     axes.set(xlim=(0.0, width), ylim=(0.0, height))
     return figure, axes
-
-
-COLUMNS, GAP, TITLE = 2, 24.0, 18.0
-LONGEST = 62
-
-
-def plain(svg: str) -> str:
-    """A drawing with the colours that its variables stand for."""
-    return re.sub(r"var\(--fig-\w+, (#[0-9a-f]{6})\)", r"\1", svg)
-
-
-def size_of(svg: str) -> tuple[float, float]:
-    """Width and height of a drawing, points."""
-    found = re.search(r'viewBox="0 0 ([\d.]+) ([\d.]+)"', svg)
-    if found is None:
-        raise ValueError("a drawing without viewBox")
-    return float(found[1]), float(found[2])
-
-
-def sheet(rows: Sequence[Sequence[Drawing]], statement: str = "") -> bytes:
-    """Rows of figures, one below the other; equal figures give equal bytes.
-
-    Parameters
-    ----------
-    rows : sequence of sequence of Figure
-        One figure at least. Rows of one figure each are put in two columns.
-    statement : str
-        What holds for all figures; the file's description.
-    """
-    if all(len(row) == 1 for row in rows):
-        single = [row[0] for row in rows]
-        rows = [single[i : i + COLUMNS] for i in range(0, len(single), COLUMNS)]
-    wide = max(size_of(f.svg)[0] for row in rows for f in row)
-    parts, top = [], GAP
-    for row in rows:
-        for i, figure in enumerate(row):
-            x = GAP + i * (wide + GAP)
-            parts += [_title(figure, x, top + 10.0, wide), _placed(figure, x, top + TITLE)]
-        top += TITLE + max(size_of(f.svg)[1] for f in row) + GAP
-    across = GAP + max(map(len, rows)) * (wide + GAP)
-    head = (
-        f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {across:g} {top:g}" width="{across:g}pt" '
-        f'height="{top:g}pt" style="background:#fff">\n'
-    )
-    if statement:
-        head += f"<desc>{escape(statement)}</desc>\n"
-    return (head + "".join(parts) + "</svg>\n").encode()
-
-
-def _title(figure: Drawing, x: float, y: float, wide: float) -> str:
-    fit = f' textLength="{wide:g}" lengthAdjust="spacingAndGlyphs"' if len(figure.title) > LONGEST else ""
-    return (
-        f'<text x="{x:g}" y="{y:g}" font-family="Helvetica, Arial, sans-serif" font-size="9.5" font-weight="bold"{fit}>'
-        f"{escape(figure.title)}</text>\n"
-    )
-
-
-def _placed(figure: Drawing, x: float, y: float) -> str:
-    wide, tall = size_of(figure.svg)
-    place = f'<svg x="{x:g}" y="{y:g}" width="{wide:g}" height="{tall:g}" '
-    return plain(figure.svg).replace("<svg ", place, 1)

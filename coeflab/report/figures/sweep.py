@@ -15,10 +15,11 @@ from coeflab.core.types import Array
 from coeflab.fits.results.fit_result import LeftOut, Sweep
 from coeflab.law.symbols import primed
 from coeflab.report.document import Figure, Series
+from coeflab.report.figures.artists import strokes
 from coeflab.report.figures.palette import COLOURS, power_of_ten
 from coeflab.report.figures.panel import BOTTOM, GAP, TOP, Range, drawing, legend, limits, panel
 from coeflab.report.figures.series import axis_name, curve, numbers, on_axis, points, tagged
-from coeflab.report.figures.svg import settings, strokes, svg_text
+from coeflab.report.figures.svg import settings, svg_text
 from coeflab.report.notation import as_users_wrote
 from coeflab.report.texts import text_of
 

@@ -19,11 +19,14 @@ from coeflab.bodies.shape import Parts, Plate, Revolution
 from coeflab.core.errors import InputError
 from coeflab.core.types import Array
 from coeflab.report.document import Figure
-from coeflab.report.figures.body import FRONT, SIDE, TOP, Sheet, rulers
-from coeflab.report.figures.body_scene import part_facets, picture_surface
+from coeflab.report.figures.body import FRONT, SIDE, TOP
+from coeflab.report.figures.body_view import Sheet
 from coeflab.report.figures.outline_overlay import STYLES, drawn, overlay
 from coeflab.report.figures.palette import COLOURS
-from coeflab.report.figures.svg import paper, settings, sheet, svg_text
+from coeflab.report.figures.part_pictures import part_facets, picture_surface
+from coeflab.report.figures.rulers import rulers
+from coeflab.report.figures.svg import paper, settings, svg_text
+from coeflab.report.figures.svg_file import sheet
 
 WIDTH, MARGIN, GAP = 720.0, 16.0, 26.0
 LEFT, BELOW, CAPTION, SIZES, KEY = 36.0, 26.0, 20.0, 24.0, 40.0

@@ -13,7 +13,8 @@ import numpy as np
 
 from coeflab.core.table import number
 from coeflab.core.types import Array
-from coeflab.fits.results.fitted_model import FittedModel, chance
+from coeflab.fits.results.fitted_model import FittedModel
+from coeflab.fits.results.lack_of_fit import chance
 from coeflab.law.symbols import ANGULAR, COMPONENTS, CONTROLS, LINEAR, primed
 from coeflab.report.figures.palette import COLOURS, power_of_ten, superscript
 from coeflab.report.texts import text_of

@@ -26,10 +26,11 @@ from coeflab.core.text.bounded import own_text
 from coeflab.law.symbols import primed
 from coeflab.report.document import Answer, AnswerRow, Axis, Document, Figure, Layer, Panel, Scene, Series, every
 from coeflab.report.figures.first_page import share_text
-from coeflab.report.figures.svg import size_of
+from coeflab.report.figures.svg_file import size_of
 from coeflab.report.formats import inside_a_page, page_environment
 from coeflab.report.glossary import definitions_html, linked_html
-from coeflab.report.notation import cell_html, html, keeping, label, unit_html, unit_label
+from coeflab.report.markup import cell_html, html, label, unit_html, unit_label
+from coeflab.report.notation import keeping
 from coeflab.report.printable import shortened, visible
 
 STEPS = 65535

@@ -267,7 +267,7 @@ def _set(pieces: Iterable[Run]) -> str:
             out[-1] = Piece(piece.math, joined)
         else:
             out.append(piece)
-    return "".join(f"${p.tex}$" if p.math else _unligatured(p.tex) for p in out).strip()
+    return "".join(f"${p.tex}$" if p.math else re.sub(r"(?<=[-,'])(?=[-,'])", "{}", p.tex) for p in out).strip()
 
 
 def _pieces(run: Run) -> Sequence[Piece]:
@@ -329,8 +329,3 @@ def _has_type(ch: str) -> bool:
         except UnicodeError:
             return False
     return ch.isalpha()
-
-
-def _unligatured(text: str) -> str:
-    """Plain text whose hyphens, commas and marks stay those that were written."""
-    return re.sub(r"(?<=[-,'])(?=[-,'])", "{}", text)

@@ -16,7 +16,7 @@ from coeflab.core.table import ABSENT, Table, percent, plus_minus, says_one
 from coeflab.core.text.bounded import own_bytes
 from coeflab.core.version import VERSION
 from coeflab.report.document import Answer, AnswerRow, Document, Figure, Section
-from coeflab.report.figures.svg import plain, size_of
+from coeflab.report.figures.svg_file import plain, size_of
 from coeflab.report.notation import Command, Raised, Run, cell_runs, keeping, runs, unit_runs, verbatim
 from coeflab.report.printable import BREAK, CLOCK, WORD, breakable, glyphs, shortened
 

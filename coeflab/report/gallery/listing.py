@@ -20,8 +20,8 @@ from coeflab.core.table import percent, plus_minus
 from coeflab.core.text.bounded import stream_of
 from coeflab.core.text.json import parse_json
 from coeflab.core.types import dataclass
-from coeflab.report.document import digest_of
 from coeflab.report.printable import shortened
+from coeflab.report.reproduction import digest_of
 from coeflab.vehicle.parameter_file import ParameterFile, read_parameter_file
 from coeflab.vehicle.stability import INDICES, sense, stability
 

@@ -31,9 +31,10 @@ from coeflab.core.table import Table
 from coeflab.core.text.bounded import own_text, stream_of
 from coeflab.report.formats import page_environment
 from coeflab.report.gallery.listing import SERVED, Listing, ParameterEntry, Shelf, fault, place_of
-from coeflab.report.notation import cell_html, html, keeping, users_texts
+from coeflab.report.markup import cell_html, html
+from coeflab.report.notation import keeping, users_texts
 from coeflab.report.printable import shortened, visible
-from coeflab.report.tables import models as comparison_tables
+from coeflab.report.tables import compared_files
 from coeflab.vehicle.comparison import compare
 from coeflab.vehicle.parameter_file import ParameterFile
 
@@ -375,12 +376,12 @@ class _Request(BaseHTTPRequestHandler):
             return
         names = _apart([shortened(p.name, COLUMN) for p in found])
         pairs = [compare(found[0], other) for other in found[1:]]
-        tables = [comparison_tables.side_by_side(found[0], pairs, names)]
+        tables = [compared_files.side_by_side(found[0], pairs, names)]
         words = [
-            (f"{name} against {names[0]}", (*p.statements, *comparison_tables.reasons(p)))
+            (f"{name} against {names[0]}", (*p.statements, *compared_files.reasons(p)))
             for name, p in zip(names[1:], pairs, strict=True)
         ]
-        tables += [comparison_tables.models(p, with_statements=False) for p in pairs]
+        tables += [compared_files.models(p, with_statements=False) for p in pairs]
         with keeping(users_texts(*found)):
             self._page(HTTPStatus.OK, comparison(tables, [s for s in words if s[1]], names))
 

@@ -18,12 +18,13 @@ from coeflab.core.provenance import InputFile, work
 from coeflab.core.types import Array
 from coeflab.report import acceptance as acceptance_tables
 from coeflab.report.acceptance import Acceptance, Basis, Compared, ComparedTable, overview, share
-from coeflab.report.document import Document, Figure, Panel, Section, digest_of, published_reproduction
+from coeflab.report.document import Document, Figure, Panel, Section
 from coeflab.report.figures.palette import COLOURS
 from coeflab.report.figures.panel import BOTTOM, COLUMNS, LEGEND_ROW, RIGHT, WIDTH, drawing, height_of, legend, ticks
 from coeflab.report.figures.series import numbers, points, tagged
 from coeflab.report.figures.svg import settings, svg_text
 from coeflab.report.first_page import answer
+from coeflab.report.reproduction import digest_of, published_reproduction
 from coeflab.report.sections.conventions import published_conventions
 from coeflab.report.texts import table_of, text_of
 

@@ -1,9 +1,4 @@
-"""One section a campaign, one part of it a coefficient.
-
-The uncertainty budget in a report: what U95 holds, what a validation concludes, how it carries on.
-
-The figure of one budget: parts as bars, the largest on top.
-"""
+"""One section a campaign, one part of it a coefficient."""
 
 from __future__ import annotations
 
@@ -11,47 +6,34 @@ import re
 from collections.abc import Iterator, Sequence
 
 import numpy as np
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure as Drawing
 
 from coeflab.core.axes import point_in_words
 from coeflab.core.provenance import work
-from coeflab.core.table import Table, coefficient, percent, plus_minus, with_u95
+from coeflab.core.table import Table, percent, plus_minus, with_u95
 from coeflab.core.wording import listed
 from coeflab.fits.results.fit_result import FitResult, Sweep
-from coeflab.fits.results.fitted_model import FittedModel, residuals_in_words
-from coeflab.fits.uncertainty.budget import Budget
+from coeflab.fits.results.fitted_model import FittedModel
+from coeflab.fits.results.lack_of_fit import residuals_in_words
 from coeflab.law.coefficient import Coefficient
 from coeflab.law.symbols import primed
 from coeflab.report.document import Figure, Section
 from coeflab.report.figures.estimator import estimator_figure
 from coeflab.report.figures.incidence import ACROSS, incidence_figure
 from coeflab.report.figures.model import distinct, model_figures, over_what
-from coeflab.report.figures.palette import COLOURS, power_of_ten
-from coeflab.report.figures.panel import row_panel
-from coeflab.report.figures.series import numbers, points
-from coeflab.report.figures.svg import POINTS, settings, svg_text
 from coeflab.report.figures.sweep import sweep_figure
 from coeflab.report.figures.variables import moving, response_name
 from coeflab.report.sections.coefficients import in_one_line
 from coeflab.report.sections.oscillations import oscillation_sections
 from coeflab.report.tables import models as joint_tables
 from coeflab.report.tables import models as model_tables
-from coeflab.report.tables import own_cfd
 from coeflab.report.tables import results as tables
 from coeflab.report.tables import sources as source_tables
 from coeflab.report.tables import sweeps as sweep_tables
-from coeflab.report.tables import uncertainty as budget_tables
-from coeflab.report.tables.uncertainty import SET
 from coeflab.report.texts import text_of
-from coeflab.study.lines import MEANING
 from coeflab.study.study import Study
 from coeflab.study.symmetry import zeros
-from coeflab.study.towed import Towed, towed
-from coeflab.study.validation import validations
-from coeflab.tables.force_table import STUDIES, ForceTable
-from coeflab.vehicle.reference import Relation
-from coeflab.vehicle.stability import centre_of_pressure, stability
+from coeflab.tables.force_table import ForceTable
+from coeflab.vehicle.published_values import Relation
 
 LONGEST = 80
 
@@ -244,137 +226,3 @@ def _caveats(sweep: Sweep) -> list[str]:
         moved = f"stays at {low}" if low == high else f"lies between {low} and {high}"
         out.append(f"Had the sweep ended sooner, as in the table by largest setting, the value {moved}.")
     return out
-
-
-WIDTH, LEFT, RIGHT, BOTTOM, TOP = 340.0, 112.0, 44.0, 34.0, 8.0
-ROW, THICK = 17.0, 0.62
-MEASURED = ("random", "model form", "random and model form")
-STUDIED = ("grid", *STUDIES.values())
-
-
-def tornado_figure(b: Budget, anchor: str) -> Figure:
-    """Half-widths of all assessed parts to both sides of the value, and U95 below them.
-
-    Parameters
-    ----------
-    b : Budget
-    anchor : str
-    """
-    bars = sorted(((p.name, p.half_width) for p in b.parts), key=lambda p: -p[1])
-    if b.u95 is not None:
-        bars.append(("U95", b.u95))
-    factor, power = power_of_ten(max((h for _, h in bars), default=0.0))
-    name = primed(b.symbol)
-    title = f"{name}, {b.campaign}: uncertainty budget"
-    description = _description(b, bars)
-    with settings():
-        height = BOTTOM + TOP + ROW * max(len(bars), 1)
-        figure = Drawing(figsize=(WIDTH / POINTS, height / POINTS))
-        axes = _bars(figure, bars, factor, f"change of {name}{power}")
-        words = points(
-            "bars", "95 % half-width", np.array([h for _, h in bars]), np.arange(len(bars))[::-1] + 0.0,
-            [f"{label}, {percent(half, b.value)} of the value" for label, half in bars],
-        )  # fmt: skip
-        shown = numbers(axes, (words,), f"change of {name}", "", factor_across=factor, bars="across")
-        svg = svg_text(figure, anchor, title, description)
-    return Figure(anchor, svg, title, _caption(b), description, (shown,))
-
-
-def _bars(figure: Drawing, bars: list[tuple[str, float]], factor: float, name: str) -> Axes:
-    reach = 1.08 * factor * max((h for _, h in bars), default=0.0) or 1.0
-    rows = [(label, f"± {half * factor:.3g}") for label, half in bars]
-    count = max(len(bars), 1)
-    axes = row_panel(figure, (LEFT, RIGHT, BOTTOM, TOP), (-reach, reach), rows, count, name)
-    for row, (label, half) in enumerate(bars):
-        colour = COLOURS["ink" if label == "U95" else "a" if label in MEASURED else "b" if label in STUDIED else "c"]
-        size = half * factor
-        axes.barh(count - 1.0 - row, 2.0 * size, height=THICK, left=-size, color=colour, zorder=2)
-    return axes
-
-
-def _caption(b: Budget) -> str:
-    text = f"95 % half-widths of the parts of {primed(b.symbol)} = {coefficient(b.value)}"
-    text += f", joined to U95 = {coefficient(b.u95)} as a root sum of squares. " if b.u95 is not None else "; no U95. "
-    return text + f"Not assessed: {', '.join(b.unassessed) or 'nothing known'}."
-
-
-def _description(b: Budget, bars: list[tuple[str, float]]) -> str:
-    each = ", ".join(f"{label} {coefficient(half)} ({percent(half, b.value)})" for label, half in bars) or "no part"
-    return f"Bars of half-widths to both sides of {coefficient(b.value)}: {each}."
-
-
-def budget_sections(study: Study) -> tuple[Section, ...]:
-    """One section, or none where no coefficient has a budget."""
-    found = study.budgets
-    models = tuple(m for f in study.fits for m in f.models)
-    if not found and not any(m.shared for m in models):
-        return ()
-    derived = [d for f in study.fits for d in centre_of_pressure(f.coefficients, f.campaign)]
-    derived += [d for p in study.parameter_files.values() for d in stability(p)]
-    tables = (
-        budget_tables.overview(found),
-        budget_tables.grids(found),
-        budget_tables.studies(found),
-        budget_tables.validation(validations(study, found)),
-        budget_tables.derived(derived),
-        *(budget_tables.shared(m) for m in models),
-    )
-    text = (
-        text_of("campaign.joined"),
-        text_of("campaign.inputs"),
-    )
-    turned = {(s.campaign, s.symbol) for f in study.fits for s in f.sweeps if s.by_symmetry}
-    own_tows = {t.campaign for t in study.plan.tows if t.added is not None}  # in the overview alone
-    wanted = [
-        b
-        for b in found
-        if b.symbol.removesuffix("'") in study.plan.wanted
-        and (b.campaign, b.symbol.removesuffix("'")) not in turned
-        and b.campaign not in own_tows
-    ]
-    parts = tuple(
-        Section(
-            f"budget-{i}",
-            f"{primed(b.symbol)} of {b.campaign}",
-            tables=(budget_tables.budget(b),),
-            figures=(tornado_figure(b, f"tornado-{i}"),),
-        )
-        for i, b in enumerate(wanted)
-    )
-    return (Section("budget", "Uncertainty budget", text, filled(*tables), subsections=parts),)
-
-
-def tow_sections(study: Study) -> tuple[Section, ...]:
-    """Bodies that our own computations tow, or none where the plan names none."""
-    found = towed(study)
-    if not found:
-        return ()
-    campaigns = {one.tow.campaign for one in found}
-    unassessed = dict.fromkeys(name for b in study.budgets if b.campaign in campaigns for name in b.unassessed)
-    left = "; ".join(name for name in unassessed if name not in SET and not name.startswith("grid"))
-    text: tuple[str, ...] = (
-        text_of(
-            "campaign.own_tows",
-            left=f" U95 leaves out: {left}." * bool(left),
-            conditions=text_of("campaign.conditions"),
-            meaning=MEANING,
-        ),
-        "E = S - D, simulation minus test, is compared with the validation uncertainty U_V (ASME V&V 20). A verdict needs a steady test of the same body.",
-    )
-    with_values = [one for one in found if any(r.value is not None for r in one.rows)]
-    text += tuple(_nothing(one) for one in found if one not in with_values)
-    judged = {v.simulation for v in validations(study, study.budgets)}  # whose errors stand under Comparison
-    each = (
-        t for one in with_values
-        for t in (own_cfd.own_tow(one), *(() if one.tow.campaign in judged else (own_cfd.tow_against(one),)))
-    )  # fmt: skip
-    rest = filled(*(own_cfd.own_tow(one) for one in found if one not in with_values))
-    more = (Section("no-tow", "Own CFD without a value", tables=rest, appendix=True),) if rest else ()
-    return (Section("own-tows", "Own CFD", text, filled(*each), subsections=more),)
-
-
-def _nothing(found: Towed) -> str:
-    """A body without any value, in one line."""
-    reasons = "; ".join(dict.fromkeys(r.why for r in found.rows if r.why))
-    missing = listed(list(dict.fromkeys(r.missing for r in found.rows if r.missing)))
-    return f"{found.tow.name}: {missing or 'no value'}{f', as {reasons}' if reasons else ''}."

@@ -15,7 +15,7 @@ from coeflab.report.document import Section
 from coeflab.report.tables import force_tables
 from coeflab.report.tables import nouns as noun_tables
 from coeflab.report.tables import results as tables
-from coeflab.report.tables.uncertainty import SET, sentences_on_open
+from coeflab.report.tables.budgets import SET_IN_A_COMPUTATION, sentences_on_open
 from coeflab.report.texts import table_of, text_of, texts_of
 from coeflab.study.study import Study
 from coeflab.study.symmetry import zeros
@@ -105,7 +105,7 @@ def _table(study: Study, campaign: str, body: str) -> Table:
     computed = bool(budgets) and all(b.kind == "cfd" for b in budgets)
     notes = [
         in_one_line(zero), form_not_assessed(shown), shorter_ranges(shown, tied),
-        *sentences_on_open(_of_some(name, budgets) for name in open_parts if not (computed and name in SET)),
+        *sentences_on_open(_of_some(name, budgets) for name in open_parts if not (computed and name in SET_IN_A_COMPUTATION)),
         force_tables.unused([t for t in study.tables if t.campaign in campaign.split(", ")]), _wrong(study, campaign),
     ]  # fmt: skip
     return table_of(

@@ -18,9 +18,9 @@ from coeflab.motion.uncertainty.spread import Importance, Spread
 from coeflab.motion.uncertainty.uncertainty import Carried
 from coeflab.report.document import Answer, AnswerRow, Chip, Figure, Section, Topic
 from coeflab.report.figures.first_page import forest_figure, share_text
+from coeflab.report.figures.hull_outline import hull_figure
 from coeflab.report.figures.motion import track_figures
 from coeflab.report.figures.uncertainty import bars
-from coeflab.report.sections.body import hull_figure
 from coeflab.report.sections.stability import no_index
 from coeflab.report.tables import nouns as noun_tables
 from coeflab.report.tables.uncertainty import shown_unit

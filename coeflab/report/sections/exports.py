@@ -6,7 +6,9 @@ import numpy as np
 
 from coeflab.core.table import ABSENT, Table
 from coeflab.formats import loss_tables
-from coeflab.formats.export import ASSUMED, LOSSLESS, Export, Kind, Loss, Refused
+from coeflab.formats.export import Export, Refused
+from coeflab.formats.loss import ASSUMED, LOSSLESS, Loss
+from coeflab.formats.missing_parts import Kind
 from coeflab.law.symbols import COMPONENTS, MOTIONS
 from coeflab.report.document import Section
 from coeflab.report.texts import table_of, text_of, texts_of

@@ -11,7 +11,7 @@ from coeflab.core.errors import CoeflabError
 from coeflab.core.table import ABSENT, Table, number
 from coeflab.core.wording import collected, grouped, in_sentences, listed
 from coeflab.law.symbols import primed
-from coeflab.motion.steady_state import DRAWN, RootLocus, root_locus
+from coeflab.motion.root_locus import DRAWN, RootLocus, root_locus
 from coeflab.report.document import Figure, Section
 from coeflab.report.figures.root_locus import IN_PLANE, root_locus_figure
 from coeflab.report.tables.added_mass import mass_table
@@ -19,8 +19,8 @@ from coeflab.report.texts import table_of, text_of, texts_of
 from coeflab.study.study import Study
 from coeflab.vehicle.criteria import REVERSAL, TURNING, criteria
 from coeflab.vehicle.parameter_file import ParameterFile
-from coeflab.vehicle.reference import Relation
-from coeflab.vehicle.stability import FAST, INDICES, NO_CRITERION, SEED, SIGN_OPEN, Derived, by_mass, sense, stability
+from coeflab.vehicle.published_values import Relation
+from coeflab.vehicle.stability import FAST, INDICES, SEED, Derived, Verdict, by_mass, sense, stability, verdict
 
 RUDDER = float(np.radians(15.0))  # at which the diameter of the linear turn is stated
 
@@ -34,17 +34,17 @@ DRAWN_TEXT = f"95 % limits: {DRAWN} draws of the four derivatives with their cov
 
 def in_words(study: Study) -> list[str]:
     """Which parameter files are unstable, and which are not, plane by plane; none where no index can be given."""
-    named: dict[str, dict[str, dict[str, list[str]]]] = {index: {} for index in IN_PLANE}
+    named: dict[str, dict[tuple[Verdict, str], dict[str, list[str]]]] = {index: {} for index in IN_PLANE}
     for parameters in study.parameter_files.values():
         for d in stability(parameters):
-            named[d.name].setdefault(sense(d), {}).setdefault(parameters.name, []).append(_value(d))
+            named[d.name].setdefault((verdict(d), sense(d)), {}).setdefault(parameters.name, []).append(_value(d))
     lacking = {p.name: p.conditions.speed for p in study.parameter_files.values() if p.hydrostatics is None}
     out: list[str] = []
     for index, senses in named.items():
         each = [
             named
-            for v in sorted(senses, key=lambda v: ("unstable" not in v, v))
-            for named in _of_one_sense(index, v, senses[v], lacking)
+            for v in sorted(senses, key=lambda v: (v[0] is not Verdict.UNSTABLE, v[1]))
+            for named in _of_one_sense(index, *v, senses[v], lacking)
         ]
         if each:
             start = (
@@ -76,16 +76,16 @@ def _one_body(study: Study) -> list[str]:
 
 
 def _of_one_sense(
-    index: str, verdict: str, places: Mapping[str, Sequence[str]], lacking: Mapping[str, float]
+    index: str, says: Verdict, words: str, places: Mapping[str, Sequence[str]], lacking: Mapping[str, float]
 ) -> list[str]:
     """The parameter files that one verdict holds for, so many at a time; at high speed also what is open at their own."""
     each = [f"{name} ({', '.join(values)})" for name, values in places.items()]
     open_at = ""
-    if FAST in verdict:
+    if says.decided and index == "G_v":
         speeds = listed([number(u, 3) for u in dict.fromkeys(lacking[n] for n in places if n in lacking)] or [""])
         open_at = f". {index} gives no verdict at {speeds} m/s, because BG is unknown" if speeds else ""
-    undecided = {SIGN_OPEN: f"undecided (sign of {index} open)", NO_CRITERION: "without a verdict"}
-    words = undecided.get(verdict, verdict.replace(FAST, f"{FAST} (restoring moment left out)"))
+    undecided = {Verdict.SIGN_OPEN: f"undecided (sign of {index} open)", Verdict.NONE: "without a verdict"}
+    words = undecided.get(says, words.replace(FAST, f"{FAST} (restoring moment left out)"))
     groups = [f"{words}: {', '.join(group)}" for group in grouped(each, PLACES, ", ".join)]
     return [*groups[:-1], groups[-1] + open_at]
 
@@ -220,8 +220,8 @@ def _other_criteria(parameters: ParameterFile) -> list[tuple[str, ...]]:
     for d in criteria(parameters):
         remarks = [d.statement] if d.result is None else [d.limits] if d.limits else []
         if d.name == TURNING:
-            holds = index is not None and index.decided and sense(index).startswith("stable")
-            verdict = f"D/L = {number(2.0 / (abs(d.value) * RUDDER), 3)}" if holds else NO_CRITERION
+            holds = index is not None and verdict(index) is Verdict.STABLE
+            says: str = f"D/L = {number(2.0 / (abs(d.value) * RUDDER), 3)}" if holds else Verdict.NONE
             open_one = index is None or not index.decided
             without = (
                 "a steady linear turn only if stable, which is open"
@@ -231,9 +231,9 @@ def _other_criteria(parameters: ParameterFile) -> list[tuple[str, ...]]:
             remarks.insert(0, "steady turn at 15 deg of rudder, linear" if holds else without)
         else:
             slower = parameters.conditions.speed < d.value
-            verdict = "planes reversed" if slower else "planes as ordered"
+            says = "planes reversed" if slower else "planes as ordered"
             remarks.insert(0, f"at {number(parameters.conditions.speed, 3)} m/s")
-        out.append((parameters.name, d.name, number(d.value), number(d.half_width, 2), verdict, "; ".join(remarks)))
+        out.append((parameters.name, d.name, number(d.value), number(d.half_width, 2), says, "; ".join(remarks)))
     return out
 
 

@@ -18,7 +18,7 @@ from coeflab.report.texts import text_of
 from coeflab.study.study import Study
 from coeflab.study.towed import towed
 from coeflab.study.validation import WIDE, by_measured_number, printed_indices, validations
-from coeflab.vehicle.reference import Comparison, Relation
+from coeflab.vehicle.published_values import Comparison, Relation
 
 SEVERAL = 3  # campaigns that a sentence names; of more it says how many, and the table has them
 

@@ -235,14 +235,9 @@ def primes(found: Triangulation) -> Table:
     return Table("Primes", tuple(headers), tuple(rows), tuple(notes))
 
 
-def _rounding(result: AddedMass) -> float:
-    """Entries below this are rounding and shown as zero."""
-    return 1e-12 * float(np.max(np.abs(result.matrix)))
-
-
 def _settled(result: AddedMass, symbol: str) -> float:
     value = result.derivatives[symbol]
-    return value if abs(value) > _rounding(result) else 0.0
+    return value if abs(value) > (1e-12 * float(np.max(np.abs(result.matrix)))) else 0.0
 
 
 def _gap(value: float, bounds: tuple[float, float]) -> str:

@@ -17,13 +17,13 @@ from coeflab.report.tables import nouns as noun_tables
 from coeflab.report.tables.results import NO_DATA
 from coeflab.report.texts import table_of
 from coeflab.study.validation import WIDE
-from coeflab.vehicle.reference import Relation
+from coeflab.vehicle.published_values import Relation
 
 if TYPE_CHECKING:
     from coeflab.core.types import Array
     from coeflab.study.study import Study
     from coeflab.tables.force_table import ForceTable
-    from coeflab.vehicle.reference import Comparison, Reference
+    from coeflab.vehicle.published_values import Comparison, Reference
 
 
 VERDICTS = {True: "pass", False: "fail", None: "no verdict"}

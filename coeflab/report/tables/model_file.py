@@ -14,7 +14,8 @@ from coeflab.law.rigid_body import ideal_quadratics
 from coeflab.law.symbols import COMPONENTS, MOTIONS, derivative, primed
 from coeflab.report.texts import table_of
 from coeflab.vehicle.force_law import points_of
-from coeflab.vehicle.parameter_file import SCHEMA_VERSION, ParameterFile, is_later
+from coeflab.vehicle.parameter_file import ParameterFile
+from coeflab.vehicle.schema_versions import SCHEMA_VERSION, is_later
 from coeflab.vehicle.second_order import ROUNDING, products_once
 from coeflab.vehicle.stability import stability
 

@@ -1,4 +1,4 @@
-"""Motions and their figures as tables and as CSV."""
+"""Motions and their figures as tables, CSV and Parquet."""
 
 from __future__ import annotations
 

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 from coeflab.core.table import ABSENT, Table, as_printed, percent, with_u95
 from coeflab.core.wording import collected, listed
 from coeflab.law.symbols import primed
+from coeflab.report.tables.budgets import SET_IN_A_COMPUTATION, sentences_on_open
 from coeflab.report.tables.results import NO_VALUE
-from coeflab.report.tables.uncertainty import SET, sentences_on_open
 from coeflab.report.texts import table_of
 from coeflab.study.lines import NAME
 from coeflab.study.towed import NO_RESULT as SHARE
@@ -88,7 +88,8 @@ def tow_against(found: Towed) -> Table:
     known = dict.fromkeys((v.experiment, v.reynolds) for v in judged)
     notes += [f"Re: {in_millions(s)} in the CFD, {in_millions(d)} in {test}." for test, (s, d) in known if s and d]
     notes += sentences_on_open(
-        (_of_some(u, judged) for v in judged for u in v.lacking if u not in SET), what="From the CFD, U_V leaves out"
+        (_of_some(u, judged) for v in judged for u in v.lacking if u not in SET_IN_A_COMPUTATION),
+        what="From the CFD, U_V leaves out",
     )
     fitted = [primed(v.symbol) for v in judged if v.lacking_measured]
     of = f"U_V of {listed(fitted)}" if 0 < len(fitted) < len(judged) else "U_V"

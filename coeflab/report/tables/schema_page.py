@@ -10,7 +10,8 @@ from typing import Any
 from coeflab.core.stored import FIRST_VERSION
 from coeflab.core.text.bounded import own_text
 from coeflab.core.text.json import parse_json
-from coeflab.vehicle.parameter_file import SCHEMA_VERSION, VERSIONS, ParameterFile, is_later, schema
+from coeflab.vehicle.parameter_file import ParameterFile, schema
+from coeflab.vehicle.schema_versions import SCHEMA_VERSION, VERSIONS, is_later
 
 Json = dict[str, Any]
 COLUMNS = "| Key | Type | Unit | Since | If absent | Meaning |\n| --- | --- | --- | --- | --- | --- |\n"

@@ -13,7 +13,7 @@ from coeflab.fits.rows.sweeps import FEWEST_SETTINGS, STALLED
 from coeflab.fits.rows.too_few import FEW_ROWS
 from coeflab.fits.statistics.diagnostics import replicate_groups
 from coeflab.fits.statistics.least_squares import factorise, solve
-from coeflab.fits.statistics.linear_model import t_probability
+from coeflab.fits.statistics.robust_errors import t_probability
 from coeflab.fits.statistics.slopes import design
 from coeflab.law.coefficient import Status
 from coeflab.law.symbols import primed

@@ -22,7 +22,7 @@ from coeflab.fits.statistics import data_gate, origin_slope
 from coeflab.fits.statistics.data_gate import FEWEST, Parity
 from coeflab.fits.statistics.slopes import rest_and_curvature
 from coeflab.law.symbols import MOMENTS, PORT_STARBOARD, primed
-from coeflab.study.exchanged_rows import Exchanged, Slope, exchanged_rows, grid_rows_elsewhere
+from coeflab.study.rows_elsewhere import Exchanged, Slope, exchanged_rows, grid_rows_elsewhere
 from coeflab.study.table_sweeps import Sweep, ahead_counts, setting_in_words, sweeps_of
 
 if TYPE_CHECKING:
@@ -66,10 +66,6 @@ def _copies(table: ForceTable) -> NDArray[np.bool_]:
     again[np.unique(matrix, axis=0, return_index=True)[1]] = False
     measured: NDArray[np.bool_] = np.any([np.isfinite(force) for force in table.forces.values()], axis=0)
     return again & measured
-
-
-def _about_own(table: ForceTable) -> ForceTable:
-    return table if table.measured_about is None else table.about(table.measured_about)
 
 
 @dataclass(slots=True)
@@ -424,7 +420,7 @@ def findings(tables: Sequence[ForceTable], length: float) -> tuple[Check, ...]:
     length : float
         Of the primes in which derivatives are given, m.
     """
-    own = [_about_own(t) for t in tables]
+    own = [(t if t.measured_about is None else t.about(t.measured_about)) for t in tables]
     shift = arm_shift(tables)
     turned = [t.about(t.reference_point + np.array([shift, 0.0, 0.0])) for t in tables]
     readings = max(sum(int(mask.sum()) for t in own for mask in t.usable.values()), 1)

@@ -10,13 +10,13 @@ from scipy import special
 
 from coeflab.core.finding import Severity
 from coeflab.core.table import Check
-from coeflab.fits.rows.sweeps import Secant, explained
+from coeflab.fits.rows.secant import Secant, explained
 from coeflab.law.symbols import primed
 
 if TYPE_CHECKING:
     from coeflab.fits.results.fit_result import FitResult, Sweep
     from coeflab.study.study import Study
-    from coeflab.vehicle.reference import PublishedValue, Reference
+    from coeflab.vehicle.published_values import PublishedValue, Reference
 
 summary = "slope at the origin, secant and published oscillation value of rotary derivatives"
 citations = ("roddy1990",)

@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING
 
 from coeflab.core.finding import Finding, Severity
 from coeflab.core.table import as_check
-from coeflab.vehicle.plausibility import LAW, plausibility
+from coeflab.vehicle.plausibility import plausibility
+from coeflab.vehicle.plausible_added_mass import LAW
 
 if TYPE_CHECKING:
     from coeflab.core.table import Check

@@ -7,12 +7,12 @@ from typing import TYPE_CHECKING
 
 from coeflab.core.finding import Finding, Severity
 from coeflab.core.table import as_check
-from coeflab.vehicle.reference import Relation
+from coeflab.vehicle.published_values import Relation
 
 if TYPE_CHECKING:
     from coeflab.core.table import Check
     from coeflab.study.study import Study
-    from coeflab.vehicle.reference import Reference
+    from coeflab.vehicle.published_values import Reference
 
 summary = "published columns that are compared with nothing, and by which key"
 citations = ()

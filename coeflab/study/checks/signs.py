@@ -12,7 +12,7 @@ from coeflab.core.finding import Finding, Severity
 from coeflab.core.table import Check, as_check
 from coeflab.law.coefficient import Status
 from coeflab.law.symbols import COMPONENTS, MOTIONS, primed
-from coeflab.vehicle.plausibility import MISTYPED
+from coeflab.vehicle.plausible_added_mass import MISTYPED
 
 if TYPE_CHECKING:
     from coeflab.law.coefficient import Coefficient

@@ -136,10 +136,6 @@ def _is_number(value: Value) -> bool:
     return isinstance(value, (int, float)) and not isinstance(value, bool)
 
 
-def _is_date(value: Value) -> bool:
-    return isinstance(value, (datetime.date, datetime.time, datetime.timedelta))
-
-
 def _text(value: Value) -> str:
     if isinstance(value, float) and value.is_integer() and abs(value) < 1e15:
         return str(int(value))
@@ -275,7 +271,7 @@ def _data_rows(
 
 def _values(column: list[Value], lines: list[int], k: int, met: Cells, path: Path) -> tuple[Array, list[str]]:
     """A column's numbers, and its texts where it has some."""
-    dates = [i for i, v in enumerate(column) if _is_date(v)]
+    dates = [i for i, v in enumerate(column) if isinstance(v, (datetime.date, datetime.time, datetime.timedelta))]
     if dates and any(_is_number(v) for v in column):
         i = dates[0]
         raise input_error("tables.date_among_numbers", path, lines[i], head=column[i], place=_place(lines[i], k))

@@ -16,7 +16,7 @@ from coeflab.core.text.foam import Foam, FoamCase
 from coeflab.core.texts import input_error
 from coeflab.core.wording import listed, repeated
 from coeflab.law.symbols import COMPONENTS
-from coeflab.tables import openfoam_case as of
+from coeflab.tables import openfoam_case
 from coeflab.tables.openfoam_forces import (
     XYZ,
     History,
@@ -98,9 +98,9 @@ def _whole(case: FoamCase, found: Mapping[str, bool], parts: Mapping[str, Foam],
         return list(asked)
     if len(found) == 1:
         return list(found)
-    lists = {n: of.body_patches(case, parts.get(n)) for n in found}
-    known = of.known_patches(case, list(lists.values()))
-    sets = {n: of.covered(p, known) for n, p in lists.items()}
+    lists = {n: openfoam_case.body_patches(case, parts.get(n)) for n in found}
+    known = openfoam_case.known_patches(case, list(lists.values()))
+    sets = {n: openfoam_case.matching_patches(p, known) for n, p in lists.items()}
     union = set().union(*sets.values())
     best = [n for n in found if sets[n] == union] if all(sets.values()) else []
     # Forces and coefficients of the same patches are one; the forces say more.
@@ -155,7 +155,7 @@ def run(path: Path, options: Mapping[str, Any]) -> Run:
         found.setdefault(name, []).append((kind, file))
     if not found:
         raise input_error("tables.never_run", case.root, no_forces=NO_FORCES)
-    parts = of.definitions(case, list(found))
+    parts = openfoam_case.function_objects(case, list(found))
     coefficients = {n: all(k in ("forceCoeffs", "coefficient") for k, _ in files) for n, files in found.items()}
     whole = _whole(case, coefficients, parts, given.function)
     remarks: list[str] = []
@@ -163,11 +163,13 @@ def run(path: Path, options: Mapping[str, Any]) -> Run:
                  if name in whole or not coefficients[name]}  # fmt: skip
     main = added(case, [histories.pop(n) for n in whole])
     part = parts.get(whole[0])
-    known = of.known_patches(case, [of.body_patches(case, p) for p in parts.values()])
-    body = set().union(*(of.covered(of.body_patches(case, parts.get(n)), known) for n in whole))
-    if bare := of.walls(case) - body:
+    known = openfoam_case.known_patches(case, [openfoam_case.body_patches(case, p) for p in parts.values()])
+    body = set().union(
+        *(openfoam_case.matching_patches(openfoam_case.body_patches(case, parts.get(n)), known) for n in whole)
+    )
+    if bare := openfoam_case.walls(case) - body:
         case.note(f"constant/polyMesh/boundary: forces of the body leave out the walls {', '.join(sorted(bare))}")
-    density, complaints = of.stated_density(case, part)
+    density, complaints = openfoam_case.stated_density(case, part)
     remarks += complaints
     unit, density = _scaled(case, [main, *histories.values()], density, given.density, remarks)
     point = _reference_point(case, main, part)
@@ -175,19 +177,22 @@ def run(path: Path, options: Mapping[str, Any]) -> Run:
         own = _reference_point(case, history, parts.get(history.name))
         if point is not None and own is not None and own[0] != point[0]:
             moved(history, own, point)
-    frame = of.rotating_frame(case, given.rotation, body, known)
+    frame = openfoam_case.rotating_frame(case, given.rotation, body, known)
     has_srf = any((case.root / d / f"Urel{z}").is_file() for d in ("0", "0.orig") for z in ("", ".gz"))
-    conditions = of.motion(case, frame, point, "Urel" if has_srf else "U")
+    conditions = openfoam_case.body_motion(case, frame, point, "Urel" if has_srf else "U")
     speed, flow = main.facts.get("magUInf"), conditions.get("U")
     if speed is not None and flow is not None and abs(float(str(flow.value)) - speed[0]) > 0.005 * speed[0]:
         case.note(f"{speed[1]}: magUInf {speed[0]:g} is not the speed {flow.value:.6g} m/s of {flow.place}")
     if any((case.root / "constant" / n).is_file() for n in ("dynamicMeshDict", "dynamicMeshDict.gz")):
         case.note("constant/dynamicMeshDict: the motion of a moving mesh is not read; state it in a list of runs")
-    for name, value in (("cells", of.stated_cells(case)), ("y_plus", of.stated_y_plus(case, body))):
+    for name, value in (
+        ("cells", openfoam_case.stated_cells(case)),
+        ("y_plus", openfoam_case.stated_y_plus(case, body)),
+    ):
         if value is not None:
             conditions[name] = value
-    phrases, broken, ended = of.read_log(case, of.word(case, "system/controlDict", "application"))
-    scheme = of.word(case, "system/fvSchemes", "ddtSchemes", "default")
+    phrases, broken, ended = openfoam_case.read_log(case, openfoam_case.word(case, "system/controlDict", "application"))
+    scheme = openfoam_case.word(case, "system/fvSchemes", "ddtSchemes", "default")
     counted = scheme in ("steadyState", "localEuler")
     time = RawColumn(
         "Time", "s" if scheme and not counted else "", main.values.pop("time"), means="iteration" if counted else "time"
@@ -211,8 +216,12 @@ def run(path: Path, options: Mapping[str, Any]) -> Run:
 
 
 def _scaled(
-    case: FoamCase, all_of_them: Sequence[History], density: of.Found | None, wanted: float, remarks: list[str]
-) -> tuple[tuple[str, str], of.Found | None]:
+    case: FoamCase,
+    all_of_them: Sequence[History],
+    density: openfoam_case.NumberAt | None,
+    wanted: float,
+    remarks: list[str],
+) -> tuple[tuple[str, str], openfoam_case.NumberAt | None]:
     """Forces in N of one density; units of forces and moments, and that density."""
     main = all_of_them[0]
     if main.is_coefficients:
@@ -256,7 +265,7 @@ def _ending(rows: int, history: History, broken: str, ended: bool) -> tuple[Ende
 
 
 def _stated(
-    case: FoamCase, history: History, conditions: Mapping[str, Stated], density: of.Found | None,
+    case: FoamCase, history: History, conditions: Mapping[str, Stated], density: openfoam_case.NumberAt | None,
     point: tuple[list[float], str] | None, whole: Sequence[str],
 ) -> dict[str, Stated]:  # fmt: skip
     """What the files say of keys of campaign.toml."""
@@ -271,14 +280,14 @@ def _stated(
     speed = history.facts.get("magUInf")
     if "U" in conditions:
         out["conditions.speed"] = conditions["U"]
-    elif speed is not None and of.is_number(speed[0]):
+    elif speed is not None and openfoam_case.is_number(speed[0]):
         out["conditions.speed"] = Stated(float(speed[0]), speed[1])
     if "u" in conditions and any(rate in conditions for rate in "pqr"):
         out["table.arm_point"] = Stated("reference point", conditions["u"].place)
-    if (length := history.facts.get("lRef")) is not None and of.is_number(length[0]):
+    if (length := history.facts.get("lRef")) is not None and openfoam_case.is_number(length[0]):
         out["scaling.length"] = Stated(float(length[0]), length[1])
     for name in ("transportProperties", "physicalProperties"):
         nu = case.value(case.read(f"constant/{name}"), "nu")
-        if nu is not None and of.is_number(nu[0]):
+        if nu is not None and openfoam_case.is_number(nu[0]):
             out["conditions.viscosity"] = Stated(float(nu[0]), nu[1])
     return out

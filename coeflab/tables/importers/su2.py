@@ -410,7 +410,7 @@ def _rescaled(config: _Config, conditions: Mapping[str, Stated], monitor: Monito
         density, speed = ((config.numbers(key, 1) or (1.0,))[0] for key in keys)
     elif math.isnan(density):
         own = density = 1.0
-    towed = float(cast(float, conditions["U"].value))
+    towed = float(cast("float", conditions["U"].value))
     with np.errstate(all="ignore"):
         factor = float(np.divide(density * np.square(speed), own * np.square(towed)))
     if abs(factor - 1.0) < 1e-9:

@@ -19,8 +19,9 @@ from pathlib import Path
 from typing import Any
 
 from coeflab.core.declarations import Declaration, Words
-from coeflab.core.errors import CoeflabError, InputError
+from coeflab.core.errors import CoeflabError
 from coeflab.core.machine import dask_client
+from coeflab.core.texts import input_error
 from coeflab.tank.job import REFUSED
 from coeflab.tank.jobs import Job, JobState, progress, read_progress
 
@@ -94,9 +95,7 @@ def carry_out(jobs: Sequence[Job], folder: Path, options: Dask, look: Callable[[
         for job in jobs:
             if offered and job.cores > max(offered.values()):
                 found = f"{job.cores} cores for {job.name}"
-                raise InputError(
-                    found, f"at most {max(offered.values()):g}, the resource cores of the workers", column=CORES
-                )
+                raise input_error("tow.most_resource_cores", column=CORES, found=found, max=max(offered.values()))
         waiting, failed, refused = list(jobs), set[str](), list[str]()
         running: dict[str, tuple[Job, Any]] = {}
         try:

@@ -30,6 +30,7 @@ from coeflab.core.declarations import Declaration
 from coeflab.core.errors import CoeflabError, InputError, shown
 from coeflab.core.files import write_atomically
 from coeflab.core.text.records import plain_name, read_record
+from coeflab.core.texts import input_error
 from coeflab.tank.jobs import Job, JobState, Progressed, read_progress, write_progress
 
 summary = "a cluster under Slurm: arrays of jobs, requeued at their wall time or when a node dies"
@@ -322,9 +323,7 @@ def _submitted(group: Sequence[Job], before: Sequence[str], name: str, folder: P
         given = executor.submit_array([Attempt(COMMAND, str(job.folder)) for job in group])
     except (submitit.core.utils.UncompletedJobError, submitit.core.utils.FailedSubmissionError) as why:
         words = re.sub(r"sbatch: (error: )?", "", str(why)).strip().replace("\n", " ")
-        raise InputError(
-            f"options that Slurm refuses ({words})", "options of this cluster", key="[runner.slurm]"
-        ) from None
+        raise input_error("tow.options_slurm_refuses", key="[runner.slurm]", words=words) from None
     return {job.name: one.job_id for job, one in zip(group, given, strict=True)}
 
 

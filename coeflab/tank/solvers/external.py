@@ -20,6 +20,7 @@ from coeflab.core.limits import JSON_BYTES
 from coeflab.core.text.bounded import whole_bytes
 from coeflab.core.text.csv_rows import csv_text
 from coeflab.core.text.delimited import Cells, read_cells, require_unit
+from coeflab.core.texts import input_error
 from coeflab.core.types import Array
 from coeflab.core.units import Header, factor
 from coeflab.law.symbols import ANGULAR, COMPONENTS, LINEAR, MOMENTS
@@ -180,9 +181,7 @@ def _column(cells: Cells, header: Header) -> RawColumn:
             ) from None
     else:
         known = f"{CONDITION}, {', '.join(COMPONENTS)}, se_ before one of these, {', '.join(COUNTS)}"
-        raise InputError(
-            f"the unknown column {shown(header.text)}", known, file=cells.file, line=line, column=header.text
-        )
+        raise input_error("tow.unknown_column", cells.file, line, header.text, text=shown(header.text), expected=known)
     if name != bare or name in COUNTS:
         _require_positive(cells, header, values)
     return RawColumn(name, unit, values, means=name)

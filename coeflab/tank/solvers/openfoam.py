@@ -19,6 +19,7 @@ from coeflab.core.errors import InputError, shown
 from coeflab.core.files import write_all
 from coeflab.core.text.bounded import stream_of
 from coeflab.core.text.foam import FoamCase
+from coeflab.core.texts import input_error
 from coeflab.core.types import Array
 from coeflab.law.symbols import COMPONENTS
 from coeflab.tables.importers import IMPORTERS
@@ -286,10 +287,7 @@ def _towing(folder: Path) -> tuple[Half, tuple[str, ...], tuple[tuple[str, str],
         half, divided, pairs, length, fastest = (v[0] for v in words if v is not None)
         return Half(half.strip('"')), tuple(divided), tuple((a, b) for a, b in pairs), float(length), float(fastest)
     except (ValueError, AttributeError, TypeError):
-        raise InputError(
-            "not what coeflab writes", "half, divided, mirrored, length, fastest", file=folder / "constant/towProperties",
-            advice="`coeflab tow` writes the case anew.",
-        ) from None  # fmt: skip
+        raise input_error("tow.what_coeflab_writes", folder / "constant/towProperties") from None
 
 
 def _has_rows(folder: Path) -> bool:

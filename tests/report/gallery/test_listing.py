@@ -8,12 +8,13 @@ from pathlib import Path
 import pytest
 
 from coeflab.core.files import shipped
-from coeflab.report.document import Document, digest_of
+from coeflab.report.document import Document
 from coeflab.report.first_page import answer
 from coeflab.report.formats import REPORTERS
 from coeflab.report.gallery import listing
 from coeflab.report.gallery.listing import Shelf
 from coeflab.report.printable import visible
+from coeflab.report.reproduction import digest_of
 from coeflab.vehicle.parameter_file import read_parameter_file
 from tests.cli.test_compare import VALUES, made
 from tests.report.gallery.conftest import report

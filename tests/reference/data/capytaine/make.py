@@ -13,7 +13,7 @@ from pathlib import Path
 
 import numpy as np
 
-from coeflab.bodies.mesh.meshing import box_surface
+from coeflab.bodies.mesh.structured_surface import box_surface
 
 HERE = Path(__file__).parent
 PEER = HERE.parents[3] / "benchmarks" / "capytaine_added_mass.py"

@@ -9,7 +9,7 @@ import pytest
 from coeflab.core.errors import InputError
 from coeflab.core.files import shipped
 from coeflab.law.scaling import Scaling
-from coeflab.vehicle.reference import Reference, Relation, read_references
+from coeflab.vehicle.published_values import Reference, Relation, read_references
 
 LBP = Scaling(4.26086, "LBP")
 SYNTHETIC = """[[reference]]

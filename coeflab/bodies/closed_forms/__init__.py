@@ -1,0 +1,1 @@
+"""Added mass in closed form: ellipsoids, bodies of revolution, simple parts, plane sections."""
