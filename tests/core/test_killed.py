@@ -26,7 +26,7 @@ Started = Callable[..., subprocess.Popen[str]]
 DRAWING = """
 import os, time
 from functools import partial
-from coeflab.report import content as in_parallel
+from coeflab.report import workers as in_parallel
 in_parallel.cores = lambda: 2
 def job(i):
     os.write(1, b"%d\\n" % os.getpid())  # in one piece: the other job writes to the same pipe
