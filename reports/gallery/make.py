@@ -17,7 +17,7 @@ from coeflab.fits import BY_DEFAULT
 from coeflab.report.acceptance import Acceptance
 from coeflab.report.document import Figure
 from coeflab.report.figures.estimator import estimator_figure
-from coeflab.report.figures.svg import plain
+from coeflab.report.figures.svg_file import plain
 from coeflab.report.formats.pdf import page_pictures
 from coeflab.report.sections import acceptance as acceptance_document
 from coeflab.study.checking import checked
