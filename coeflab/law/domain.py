@@ -84,6 +84,7 @@ def inside(spaces: Array, points: Array, slack: float = SLACK) -> Array:
 
 TAPER = 0.1
 THICKNESS = 1e-12
+FAR, WITHIN = 1e3, 1e-6  # box widths: of points that ask where a hull ends, and by which it may leave its box
 
 
 def clamped(points: Array, spaces: Array, low: Array, high: Array) -> Array:
@@ -265,6 +266,14 @@ class Domain:
         if len({(int(i), up) for i, up in zip(at, slope > 0.0, strict=True)}) < 2 * d:
             return False
         return bool(np.all(np.abs(edge - ends) <= SLACK * np.maximum(wide, np.abs(ends))))
+
+    def beyond_its_box(self) -> tuple[str, ...]:
+        """Variables whose low or high the half-spaces do not keep: the nearest points of far ones lie outside."""
+        size = _widths(self.low, self.high)
+        ways = np.vstack([np.eye(len(size)), -np.eye(len(size))])
+        feet = clamped((self.low + self.high) / 2.0 + FAR * size * ways, self.spaces, self.low, self.high)
+        out = np.maximum(feet - self.high, self.low - feet) > WITHIN * size
+        return tuple(v for v, wrong in zip(self.variables, np.any(out, axis=0), strict=True) if wrong)
 
     def contains(self, points: Array, slack: float = SLACK) -> NDArray[np.bool_]:
         """(n,) whether points (n, d) lie inside."""

@@ -352,6 +352,7 @@ def read_head(
     return _head(names, units, group, remarks)
 
 
+WORDS = 5  # of a name at most
 _EXPLAINS = re.compile(r"(?:^|[,;#%!]\s*)(?P<short>\w{1,8})\s+(?:-|=)\s+(?P<text>[^,;=]*[^\W\d][^,;=]*)")
 
 
@@ -388,6 +389,9 @@ def _head(names: Row, units: Row | None, group: Row | None, before: Sequence[str
     if (
         group
         and len({n for n, _ in over} - {""}) == len(texts) > 1
+        and not any(
+            ":" in g or "=" in g or len(g.split()) > WORDS for g in group[1]
+        )  # words over the table, split at its delimiter
         and not any(_NUMBER.fullmatch(g) or (is_unit(t) and t[1:]) for g, t in zip(group[1], texts))
     ):
         before = [*before, f"lines {group[0]} and {names[0]}: both name the columns"]

@@ -198,9 +198,20 @@ def _planes_in(
 LONGEST = 2000  # letters of a line that is looked at
 
 
+_BODIES = (
+    r"(?:model|bod(?:y|ies)|hull|ship|vehicle|submarine|boat|rov|[au]uv|glider|domain|geometry|mesh|grid|configuration)s?"
+    r"|(?:modell|k(?:ö|oe)rper|rumpf|schiff|boot|fahrzeug|geometrie|netz|gitter|rechengebiet)\w{0,2}"
+    r"|mod[èe]le|corps|coque|domaine|car[èe]ne|maquette|navire|maillage|modelo|cuerpo|casco|modello|corpo|carena|scafo"
+)
+_SIDES = r"starboard|port|upper|lower|left|right|steuerbord|backbord|tribord|b[âa]bord"
+# Half of a body, one of its sides, or the plane that cuts it; "the second half of the run" and "1/2 rho" are none of these.
 _HALF = re.compile(
-    r"(?i)(?<![^\W_])(?:half[\s-]*(?:model|body|hull|ship|domain|geometry|mesh|configuration)|(?:semi|half)[\s-]?span\s+model"
-    r"|halb(?:modell|k(?:ö|oe)rper|rumpf|schiff)\w*|halbe[sn]?\s+(?:modell|rumpf|k(?:ö|oe)rper)|demi[\s-]?(?:mod[èe]le|corps|coque|domaine|car[èe]ne|maquette))(?![^\W_])"
+    rf"(?i)(?<![^\W_])(?:(?:half|semi|halb(?:e[snrm]?)?|h(?:ä|ae)lfte|demi\w?|moiti[ée]|mitad|met(?:à|a)|medio|mezz[oa]|½|1/2)"
+    rf"[\s_-]{{0,3}}(?:(?:an?|of|the|de[rslnm]?|de|du|del|la|le|l'|el|dello|della)[\s]{{0,3}}){{0,3}}(?:{_BODIES})"
+    rf"|(?:{_SIDES}|modell|rumpf|k(?:ö|oe)rper|schiffs?)[\s-]{{0,3}}(?:half|h(?:ä|ae)lfte|moiti[ée])|symmetric\s+half|(?:semi|half)[\s-]?span\s+model"
+    rf"|(?:one|either)\s+side\s+(?:only|of\s+the\s+(?:{_BODIES}))|only\s+(?:the\s+)?(?:one|{_SIDES})\s+side|nur\s+(?:eine|die)\s+\w{{0,12}}\s?(?:seite|h(?:ä|ae)lfte)"
+    rf"|symmetr(?:y|ic)[\s-]{{1,3}}(?:plane|boundary|condition|bc)s?|symmetrie(?:ebene|rand\w*)|plan\s+de\s+sym[ée]trie|reflection\s+(?:plate|plane)"
+    rf"|not\s+(?:yet\s+)?(?:doubled|multiplied\s+by\s+(?:2|two))|to\s+be\s+doubled|nicht\s+verdoppelt|non\s+doubl[ée]e?s?)(?![^\W_])"
 )
 
 

@@ -179,7 +179,7 @@ def _of_basis(raw: RawTable, settings: Settings, primes: bool) -> Question:
             later = f"{basis}, once L is said"
             return replace(asked, why=given.place, short=f"{basis}: {given.place}", shown=later, grave=True)
         return replace(asked, choices=f"{given.place}: {basis}, in m^2; {asked.choices}", grave=True)
-    areas = [p for name, p in places.items() if name in ("wetted", "frontal", "lateral")]
+    areas = [p for name, p in places.items() if name in ("wetted", "frontal", "lateral", "area")]
     if given is not None or (primes and areas):
         named = given.contradicted if given is not None else "; ".join(areas)
         return replace(asked, choices=f"{named}; {asked.choices}", grave=True)

@@ -132,6 +132,11 @@ class ParameterModel(Strict):
             )  # fmt: skip
         if any(a > b for a, b in zip(*edges, strict=True)):
             raise ValueError(f"{self.response}: the domain's low is above its high")
+        if beyond := self.hull.beyond_its_box():
+            raise RefusedError(
+                f"{self.response}: half-spaces beyond low or high of {', '.join(beyond)}", "both of one domain",
+                "Of a box: [1, -high] and [-1, low] for each variable.", ("domain", "half_spaces"),
+            )  # fmt: skip
         if len(self.covariance) != k or any(len(row) != k for row in self.covariance):
             raise ValueError(f"{self.response}: the covariance of {k} terms must be {k} x {k}")
         for i, row in enumerate(self.covariance):

@@ -109,6 +109,18 @@ OTHERS = {
     "drag in lb and feet": (("<xUabsU>-4.1", "<xUabsU>-0.086"), "^Xu"),
     "drag in mm": (("<xUabsU>-4.1", "<xUabsU>-4100"), "^Xu"),
     "link of another name": (("<link_name>hull", "<link_name>base_link"), "^base_link$"),
+    "a link twice": (('<link name="planes">', '<link name="rudder">'), "^link rudder$"),
+    "a joint twice": (('<joint name="hinge"', '<joint name="stock"'), "^joint stock$"),
+    "a joint of no link": (("<child>rudder", "<child>ruder"), "^joint stock$"),
+    "a joint of itself": (("<child>rudder", "<child>hull"), "^joint stock$"),
+    "joints in a circle": (("<parent>hull</parent><child>screw", "<parent>screw</parent><child>hull</child></joint><joint name='back' type='fixed'><parent>hull</parent><child>screw"), "^joint back$"),
+    "thruster of no joint": (("<joint_name>shaft", "<joint_name>propeller"), "^Thruster$"),
+    "fin of no link": (("<link_name>rudder", "<link_name>rudders"), "^LiftDrag$"),
+    "axis of length zero": (("<xyz>1 0 0", "<xyz>0 0 0"), "^<axis>$"),
+    "pose in no frame": (('"screw"><pose>', '"screw"><pose relative_to="tail">'), "^pose screw$"),
+    "poses in a circle": (('"screw"><pose>', '"screw"><pose relative_to="screw">'), "^pose screw$"),
+    "static": (('<model name="auv">', '<model name="auv"><static>true</static>'), "^<static>$"),
+    "stall in degrees": (("<alpha_stall>0.4", "<alpha_stall>23"), "^lift-drag of rudder$"),
 }  # fmt: skip
 
 

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from coeflab.law.domain import TAPER, clamped, half_spaces, inside, taper_weight
+from coeflab.law.domain import TAPER, Domain, clamped, half_spaces, inside, taper_weight
 
 seeds = st.integers(0, 2**32 - 1)
 sizes = st.sampled_from([1e-2, 1.0, 1e3, 1e6])
@@ -169,3 +169,22 @@ def test_the_distance_counts_in_widths_and_a_flat_variable_tapers_at_once():
     nearest = np.array([[1.0, 10.0, 3.0]])
     beyond = np.array([[0.0, 0.0, 0.0], [0.03, 0.4, 0.0], [0.06, 0.8, 0.0], [0.0, 0.0, 1e-4], [np.nan, 0.0, 0.0]])
     np.testing.assert_allclose(taper_weight(nearest + beyond, nearest, low, high), [1.0, 0.5, 0, 0, 0], atol=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("low", "rows", "beyond"),
+    [
+        ([-1.0, -1.0], [[1, 1, -1], [1, -1, -1], [-1, 1, -1], [-1, -1, -1]], ()),  # a rhombus touches its box
+        ([0.0, 0.0], [[1, 1, -1], [-1, 0, 0], [0, -1, 0]], ()),
+        ([0.0, 0.0], [[1, 1, -1]], ("alpha", "beta")),
+        ([-1.0, 0.0], [[1, 0, -1], [-1, 0, -1], [0, 1, -1], [0, -1, -1]], ("beta",)),  # one-sided, but for its rows
+        ([-1.0, -1.0], [[0, 0, -1]], ("alpha", "beta")),
+        ([-1.0, -1.0], [[1, 0, 2], [-1, 0, -9], [0, 1, -1], [0, -1, -1]], ("alpha",)),  # beside the box
+    ],
+)
+def test_half_spaces_that_leave_the_box_are_named(
+    low: list[float], rows: list[list[float]], beyond: tuple[str, ...]
+) -> None:
+    """Points below `low` had a value, and a hull beside its box gave that of the nearest point of nowhere."""
+    domain = Domain(("alpha", "beta"), np.array(low), np.ones(2), np.array(rows, dtype=float))
+    assert domain.beyond_its_box() == beyond

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 import numpy as np
@@ -101,10 +102,15 @@ def test_other_solvers_name_it_in_their_own_files(
     assert file in found.files
 
 
-@pytest.mark.parametrize("text", ["half model tests", "Halbmodell M3", "essais sur demi-modèle"])
-def test_words_of_three_languages_speak_of_half_a_body(text: str) -> None:
-    found = half_in_words([("line 1", text)])
-    assert found.contradicted
+HALF = """half model tests; Halbmodell M3; essais sur demi-modèle; one half of the hull; starboard half of the hull; only the port side was meshed
+symmetry plane at y=0; on a reflection plate; half-body, not doubled; Kräfte der halben Geometrie; auf der Steuerbordhälfte; Rumpfhälfte; half_model
+moitié de la carène; mezzo modello; mitad del modelo; forces of 1/2 hull; symmetric half; symmetry boundary condition; half of the AUV"""
+WHOLE = """second half of the run; 1/2 rho U^2 L^2; U95 half-width; whole model; port side turn; at half depth; model 1/2; halbe Fahrt; half power"""
+
+
+@pytest.mark.parametrize("text", re.split("; |\n", f"{HALF}\n{WHOLE}"))
+def test_words_of_five_languages_speak_of_half_a_body(text: str) -> None:
+    assert (half_in_words([("line 1", text)]) is not None) == (text in HALF)
 
 
 ALPHA = np.array([-6.0, -3.0, 0.0, 3.0, 6.0])

@@ -22,6 +22,7 @@ FORMULAS = {
     "Y' = Y/(½ρU²LT)": "L T",
     "Koeffizienten bezogen auf L·B": "L B",
     "rho/2 V^2 L d": "L D",
+    "(1/2) rho Lpp T U^2": "L T",
     "forces divided by 0.5*rho*U^2*S_w": "wetted",
     "adimensionnés par la surface mouillée": "wetted",
     "1/2 rho U^2 A_F": "frontal",
@@ -83,6 +84,7 @@ KNOWN = ("--set", "axes.frame=FRD", "--set", "axes.reference_point=midship")
         ("LOA = 4 m, hull diameter 0.4 m; primes: 1/2 rho U^2 L D", 1.6),
         ("LOA = 4 m, frontal area 0.2 m^2, forces divided by the frontal area", 0.2),
         ("LOA = 4 m; 1/2 rho U^2 L^2", 16.0),
+        ("LOA = 4 m; reference area 0.5 m^2 of the fin", 0.5),
     ],
 )
 def test_a_basis_in_words_gives_the_planted_slope(head: str, area: float, tmp_path: Path) -> None:

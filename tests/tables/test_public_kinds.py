@@ -94,6 +94,10 @@ def test_two_rows_of_names_are_both_read(tmp_path: Path) -> None:
         "Run": "point", "Speed: U": "U [m/s]", "Drift angle: beta": "beta [deg]", "Drag: D": "drag [kN]", "Side force: C": "Y [kN]", "Yaw moment: Mz": "N [kNm]",
     }  # fmt: skip
     assert "lines 1 and 2: both name the columns" in read_raw(path, "table").remarks
+    said = "# x forward, y starboard, z down; moments about 1.9 m aft of the bow; LOA 4.2 m; radius positive: centre to starboard; inertia subtracted"
+    rows = [f"{i};{r};2.5;{r / 2};{r / 3}" for i, r in enumerate((-30, -20, -10, 10, 20, 30))]
+    words = texts(path, lines(said, "Nr;Radius [m];V [m/s];Fy [N];Mz [Nm]", rows=rows))
+    assert {"Fy", "Mz"} <= set(words), "a sentence of as many marks is no row of names"
     units = texts(path, lines("Yaw,Drag,Lift", "what,lb / N,lb / N", rows=[f"{a},1,{a}" for a in ANGLES]))
     assert "drag [N]" not in units.values(), "a row of units of two systems is no second name"
 

@@ -285,6 +285,13 @@ def arm_asked(*lines: str, **settings: object) -> Question:
         ("Modell am Arm befestigt bei 2,75 m hinter dem Bug", -2.75),
         ("Arm point 0.40 m aft of the moment point", -2.35 - 0.40),
         ("U and R are those of the reference point", -2.35),
+        ("the arm holds the model 2.75 m aft of the nose", -2.75),
+        ("towed at the reference point; R positive to starboard", -2.35),
+        ("tow post at 2.75 m aft of the bow", -2.75),
+        ("strut attached 2750 mm abaft the nose", -2.75),
+        ("R is the radius of the path of the nose", 0.0),
+        ("Führungspunkt 2,75 m hinter dem Bug", -2.75),
+        ("point de remorquage 2,75 m en arrière de l'étrave", -2.75),
     ],
 )
 def test_words_on_the_point_of_the_arm_are_quoted_and_proposed(line: str, x: float) -> None:
@@ -303,10 +310,19 @@ def test_words_on_the_point_of_the_arm_without_number_or_datum_leave_it_open(lin
     assert f'line 1: "{line}"' in one.choices
 
 
-@pytest.mark.parametrize("line", ["Rudders fixed at 5 deg", "Model held at a constant speed of 3 m/s", "Body fixed axes at midship",
+@pytest.mark.parametrize("line", ["Rudders fixed at 5 deg", "Model held at a constant speed of 3 m/s", "Body fixed axes at midship", "R of 20 m", "speed of 2 m/s at midwater", "towed at 2 m/s", "tow post of steel", "centre of rotation 20 m to starboard",
                                   "Moments about a point 2.35 m aft of the nose", "Model fixed in heave and pitch"])  # fmt: skip
 def test_other_words_leave_the_point_of_the_arm_to_its_default(line: str) -> None:
     assert arm_asked(line).shown == "the reference point"
+
+
+def test_a_french_line_gives_axes_point_and_centre_of_gravity() -> None:
+    """The article before a vowel hid the point: l'étrave, l'avant."""
+    found = said(
+        "x vers l'avant, y vers tribord, z vers le bas; moments par rapport à 1.9 m en arrière de l'étrave; centre de gravité 1.95 m en arrière de l'étrave"
+    )
+    assert found["axes.frame"].value == "FRD"
+    assert (found["axes.from"].value, found["inertia.from"].value) == ("-1.9 m nose", "-1.95 nose")
 
 
 def test_a_point_of_the_arm_from_a_named_point() -> None:

@@ -106,5 +106,7 @@ def test_a_component_by_an_area_is_that_component() -> None:
 def test_a_domain_without_half_spaces_and_a_thruster_named_thrust_are_no_file() -> None:
     with pytest.raises(ValidationError, match="no half-spaces"):
         model("Y'", [("v", "1")], {(("v", 1),): 1.0}, [-1.0], [1.0], spaces=[])
+    with pytest.raises(ValidationError, match="beyond low or high of v"):
+        model("Y'", [("v", "1")], {(("v", 1),): 1.0}, [0.0], [1.0], spaces=[[1.0, -1.0], [-1.0, -1.0]])
     with pytest.raises(ValidationError, match="another name"):
         thruster("thrust", 0.0)

@@ -18,7 +18,7 @@ from coeflab.vehicle.imported_numbers import water
 # Tags of a plugin, between which values they are in any vehicle in water. A Wageningen screw has K_T of 0.1 to 0.6 at rest.
 USUAL = {
     "thruster": {"thrust_coefficient": (2e-4, 0.05), "propeller_diameter": (5e-3, 5.0)},
-    "lift-drag": {"cla": (0.3, 20.0)},
+    "lift-drag": {"cla": (0.3, 20.0), "alpha_stall": (0.02, 3.2)},
 }
 MEDIUM = {"thruster": ("fluid_density", None), "lift-drag": ("air_density", DEFAULTS["air_density"])}
 SAME = {"thruster": ("joint_name",), "lift-drag": ("link_name", "control_joint_name", "forward", "upward", "cp")}

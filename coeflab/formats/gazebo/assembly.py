@@ -140,7 +140,7 @@ def assembly(root: Element, hull: str, file: Path | str | None = None) -> Assemb
     for link in root.iter("link"):
         elements.setdefault(link.get("name", ""), link)
     joints = [j for j in root.iter("joint") if j.get("name") is not None and j.find("child") is not None][:MOST_JOINTS]
-    ends = {id(j): (_end(j, "parent"), _end(j, "child")) for j in joints}
+    ends = {id(j): (joint_end(j, "parent"), joint_end(j, "child")) for j in joints}
     held, waiting = {hull}, [hull]
     while waiting:
         at = waiting.pop()
@@ -161,7 +161,8 @@ def assembly(root: Element, hull: str, file: Path | str | None = None) -> Assemb
     return Assembly(hull, links, elements, found, tuple(massive))
 
 
-def _end(joint: Element, tag: str) -> str:
+def joint_end(joint: Element, tag: str) -> str:
+    """Name of the link at an end of a joint, without its model."""
     part = joint.find(tag)
     return "" if part is None else (part.get("link") or (part.text or "")).strip().rpartition("::")[2]
 
@@ -193,7 +194,7 @@ def _by_poses(
 
     The frame of the model stands among them as `MODEL`.
     """
-    of_joints = {j.get("name", ""): (ends[id(j)][1], pose_of(j, file)) for j in joints if not _relative(j.find("pose"))}
+    of_joints = {j.get("name", ""): (ends[id(j)][1], pose_of(j, file)) for j in joints if not pose_base(j.find("pose"))}
     out: dict[str, Pose] = {}
 
     def resolved(name: str, deep: int) -> Pose | None:
@@ -202,7 +203,7 @@ def _by_poses(
         element = elements.get(name)
         if element is None or deep > len(elements):
             return None
-        to = _relative(element.find("pose"))
+        to = pose_base(element.find("pose"))
         own = pose_of(element, file)
         if to in ("", MODEL):
             base: Pose | None = nested.get(name, HERE)
@@ -224,7 +225,8 @@ def _by_poses(
     return {MODEL: centre.inverse} | {name: centre.inverse.then(p) for name, p in found.items() if p is not None}
 
 
-def _relative(pose: Element | None) -> str:
+def pose_base(pose: Element | None) -> str:
+    """Name of the frame that a pose is given in; empty of its default."""
     return "" if pose is None else (pose.get("relative_to") or "").strip()
 
 
@@ -263,7 +265,7 @@ def _joint(
         base = (
             link
             if joint.find("origin") is not None or pose is None
-            else placed.get(_relative(pose), link).then(pose_of(joint, file))
+            else placed.get(pose_base(pose), link).then(pose_of(joint, file))
         )
         of_model = (axis.findtext("use_parent_model_frame") or "").strip().lower() in ("true", "1")
         base = placed.get(MODEL if of_model else frame, base)

@@ -16,7 +16,8 @@ from coeflab.core.types import Array
 from coeflab.core.wording import one_line
 from coeflab.formats.gazebo.actuator_checks import actuator_checks
 from coeflab.formats.gazebo.assembly import Assembly, assembly, collision_box, displaced_by, own_inertia
-from coeflab.formats.gazebo.law import DENSITIES, FORCES, VELOCITIES, GzLink, as_sdf, read_gz_link
+from coeflab.formats.gazebo.joined import structure_checks
+from coeflab.formats.gazebo.law import DENSITIES, FORCES, VELOCITIES, GzLink, as_sdf, hydrodynamics, read_gz_link
 from coeflab.formats.left_out import MOST
 from coeflab.law.rigid_body import ideal_quadratics, inertia_doubt
 from coeflab.law.water import ROUND_DENSITY
@@ -42,6 +43,7 @@ def examine(path: Path) -> tuple[Check, ...]:
     held = assembly(root, link.link.rpartition("::")[2], path)
     out = [*_units(root, link, held, path), *_angles(root, link, held, path), *_of_box(link, held, path)]
     out += [*_links(root, held, path), *actuator_checks(root, path)]
+    out += structure_checks(root, hydrodynamics(root)[0], path)
     if np.any(link.fluid_mass) and np.any(own):
         out.append(_found(Severity.FAIL, "<fluid_added_mass>", "<fluid_added_mass> and <xDotU> ...", "one of the two",
                           "Added mass counts twice. Remove the plugin's."))  # fmt: skip

@@ -57,6 +57,7 @@ _SIZES = {
          r"|bezugsl(?:ä|ae)nge|profiltiefe|longueur\s+de\s+r[ée]f[ée]rence|corde", "mm|cm|m|ft|in"),
         ("scaling.length", r"overall\s+length|length\s+over\s*all|l_?(?:oa|pp|bp|wl)|l(?:ä|ae)nge\s+(?:ü|ue)ber\s+alles|gesamtl(?:ä|ae)nge"
          r"|longueur\s+hors\s+tout|(?:model|hull|body)\s+length|(?:modell|rumpf)l(?:ä|ae)nge", "mm|cm|m|ft|in"),
+        ("coefficients.area", r"(?:reference|ref\.?)[\s-]*area|[as]_?ref|(?:bezugs|referenz)fl(?:ä|ae)che|surface\s+de\s+r[ée]f[ée]rence", r"m\^?2|m²|cm\^?2|cm²|ft\^?2"),
         ("conditions.speed", r"(?:(?:carriage|towing|tow|model|test|ship|vehicle|water)\s+)?speed(?!\s+(?:above|below|over|under|up|range|from))"
          r"|(?:schlepp|modell|wagen|fahr)geschwindigkeit|vitesse\s+de\s+(?:remorquage|traction)", "m/s|kn|km/h"),
         ("inertia.mass", r"(?:model\s+)?mass(?:e?\s+of\s+the\s+model)?|(?:modell)?masse(?:\s+du\s+mod[èe]le)?", "kg|t"),
@@ -70,7 +71,7 @@ _BY_VOLUME = re.compile(
 _OVERALL = re.compile(r"(?i)over\s*all|über\s+alles|ueber\s+alles|gesamt|hors|l_?oa")
 _ACROSS = re.compile(rf"(?i)(?<![^\W_])(?:{_BROAD})(?![^\W_])|\bc_?ref")
 _INERTIA = re.compile(
-    r"(?i)(?<!moment of )(?<!moments of )(?<![^\W_])(?:inertia\w*|(?:model\s+)?mass(?:e|es)?|mass\s+forces?|(?:massen)?tr(?:ä|ae)gheit\w*"
+    r"(?i)(?<!moment of )(?<!moments of )(?<![^\W_])(?:inertia\w*|(?:model\s+)?mass(?:e|es)?|mass\s+forces?|(?:massen|modell)?tr(?:ä|ae)gheit\w*"
     r"|massenkr(?:ä|ae)ft\w*|modellmasse|inertie\w*)(?![^\W_])"
 )
 _TAKEN_OR_HELD = re.compile(

@@ -19,7 +19,10 @@ _BODY = re.compile(
 )
 _DIRECTION = re.compile(
     r"(?i)(?<![\w'])(?P<axis>[xyz])"
-    + atomic(r"[-\s=:>→+]|(?:axis|achse|positive?|pos\.?|is|points?|nach|zeigt|zur?|to|vers)(?![^\W_])", "between")
+    + atomic(
+        r"[-\s=:>→+]|l['’]|(?:le|la|axis|achse|positive?|pos\.?|is|points?|nach|zeigt|zur?|to|vers)(?![^\W_])",
+        "between",
+    )
     + r"\b(?P<to>forwards?|fwd|ahead|bow|vorne?|voraus|bug|avant|aft|astern|backwards?|stern|hinten|achtern|heck|arri[èe]re|starboard|stbd|"
     r"sb|right|steuerbord|stb|tribord|port|left|backbord|bb|b[âa]bord|downwards?|down|unten|bas|upwards?|up|oben|haut)\b"
 )

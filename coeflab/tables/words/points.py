@@ -39,7 +39,7 @@ _AT = re.compile(
     r"(?![^\W_])[\])]?"
     + atomic(r"[\s,]|(?:measured|gemessen|counted|en)(?![^\W_])", "before")
     + r"(?P<side>aft|behind|abaft|astern|after|hinter|achterlich|achtern|arri[èe]re|derri[èe]re|forward|fwd|ahead|before|in\s+front|vor|avant|devant|from|off|von|vom|ab|du|de|depuis)?"
-    + atomic(r"\s|(?:of|from|the|dem|der|von|vom|le|la|du|de|l')(?![^\W_])", "after")
+    + atomic(r"\s|[ld]['’]|(?:of|from|the|dem|der|von|vom|le|la|du|de)(?![^\W_])", "after")
     + r"(?P<point>midships?|amidships?|nose|bow|stem|stern|tail|cg|cb|c\.?o\.?g\.?|c\.?o\.?b\.?|cent(?:re|er)\s+of\s+(?:gravity|buoyancy)|hauptspant|schwerpunkt|bug|nase"
     r"|heck|ma[îi]tre[- ]couple|centre\s+de\s+gravit[ée]|nez|[ée]trave|f\.?p\.?|a\.?p\.?|(?:forward|fore|aft|after)\s+perpendicular|v\.?l\.?|h\.?l\.?)?(?![^\W_])"
 )
@@ -52,27 +52,35 @@ _POINTS = {"mids": "midship", "amid": "midship", "haup": "midship", "maît": "mi
            "bug": "nose", "nase": "nose", "cb": "cb", "cob": "cb", "cg": "cg", "cog": "cg", "schw": "cg",
            "nez": "nose", "stem": "nose", "etra": "nose", "étra": "nose", "ster": "stern", "tail": "stern", "heck": "stern", "fp": "FP", "forw": "FP",
            "fore": "FP", "vl": "FP", "ap": "AP", "aft": "AP", "afte": "AP", "hl": "AP"}  # fmt: skip
+_NAMED = (
+    r"midships?|amidships?|nose|bow|stern|tail|c\.?o?\.?g\.?|c\.?o?\.?b\.?|cent(?:re|er)\s+of\s+(?:gravity|buoyancy)|hauptspant|schwerpunkt|bug|nase|heck"
+    r"|ma[îi]tre[- ]couple|centre\s+de\s+gravit[ée]"
+)
 _ARM = re.compile(
     r"(?i)(?<![^\W_])(?:(?:(?:model|body|hull|vehicle|modell|k(?:ö|oe)rper|maquette)\b[^;.\d]{0,25})?(?<![^\W_])(?:held|mounted|attached|fixed|fastened|clamped|carried|"
     r"suspended|pivoted|befestigt|gehalten|eingespannt|aufgeh(?:ä|ae)ngt|fix[ée]e?|tenue?|attach[ée]e?)(?![^\W_]|\s+(?:ax[ei]s|frame|coord))[^;\d]{0,25}?(?<![^\W_])(?:at|in|by|bei|im|am|beim|[àa]u?|en)"
     r"|(?:path|arm|pivot|attachment|towing|tow|held)[\s-]*point(?:\s+of\s+the\s+arm)?|arm\s+(?:attached|fixed|attaches)(?:\s+(?:at|to))?|point\s+of\s+the\s+arm"
     r"|(?:R|U|radi(?:us|i)|speed)(?:\s+(?:and|und|et)\s+(?:R|U|radius|speed))?(?:\s+in\s+m)?,?\s+(?:(?:is|are|were|was)\s+)?(?:measured|taken|given|counted|those|that|gemessen|mesur[ée]e?s?)"
     r"(?:\s+(?:from\s+the\s+cent(?:re|er)(?:\s+of\s+the\s+\w+)?\s+)?(?:to|at|of|bis|zu|[àa]|jusqu'[àa]u?))?"
-    r"|(?:bahn|drehkran|arm|anlenk|befestigungs|aufh(?:ä|ae)nge)punkt|point\s+(?:de\s+fixation|d'attache)|point\s+(?:which|that)\s+runs\s+on)(?![^\W_])"
+    r"|(?:bahn|drehkran|arm|anlenk|befestigungs|aufh(?:ä|ae)nge|f(?:ü|ue)hrungs|schlepp|dreh)punkt|point\s+(?:de\s+(?:fixation|remorquage)|d'attache)"
+    r"|point\s+(?:which|that)\s+runs\s+on|(?:holds|carries|h(?:ä|ae)lt|tient)\s+(?:the\s+|das\s+|le\s+|la\s+)?(?:model|body|hull|vehicle|modell|maquette)(?:[^;\d]{0,15}?(?<![^\W_])(?:at|in|by|bei|im|am|[àa]u?|en))?"
+    r"|towed\s+(?:at|in|by)|(?:tow(?:ing)?[\s-]*post|strut|sting|yaw\s+(?:axis|cent(?:re|er))|(?:model\s+)?pivots?)(?:,?\s+(?:which|is|attached|mounted|fixed|about|through|at|to))*"
+    rf"|(?:R|U|radi(?:us|i)|speed|rayon|vitesse)\s+(?:of|at|to|du|au|bis|von|auf|mesur[ée]e?)(?=(?:\s+(?:the|path|circle|of|au|le|la|du|d[e']|den|dem|der))*\s+(?:{_NAMED}|(?:reference|moment)s?\s+point)(?![^\W_])))(?![^\W_])"
 )
 _OF_MOMENTS = re.compile(
     r"(?i)(?:the\s+|le\s+|dem\s+|der\s+)?(?:(?:moments?|momenten?|reference|balance)[\s-]*(?:reference[\s-]*)?(?:point|cent(?:re|er)|bezugspunkt)|bezugspunkt"
     r"|point\s+de\s+r[ée]f[ée]rence|m\.?r\.?[pc]\b\.?)(?:\s+of\s+the\s+moments)?"
 )
 _ARM_NAMED = re.compile(
-    r"(?i)[\s=:,]*(?:(?:the|a|its|model'?s?|is|was|are|at|to|of|in|der|dem|den|le|la|du)\s+)*(?P<point>moments?-datum|midships?|amidships?|nose|bow|stern|tail|c\.?o?\.?g\.?|c\.?o?\.?b\.?"
-    r"|cent(?:re|er)\s+of\s+(?:gravity|buoyancy)|hauptspant|schwerpunkt|bug|nase|heck)(?![^\W_])"
+    r"(?i)[\s=:,]*(?:(?:the|a|its|model'?s?|is|was|are|at|to|of|in|through|path|circle|der|dem|den|bahn|kreis|le|la|du|cercle)\s+)*(?P<point>moments?-datum|"
+    + _NAMED
+    + r")(?![^\W_])"
 )
 _CENTRE = re.compile(
     r"(?i)(?<![^\W_])(?:cent(?:re|er)\s+of\s+(?:gravity|mass)|c\.?o?\.?g\.?|[xl]_?c?g|schwerpunkt|centre\s+de\s+gravit[ée])(?![^\W_])"
     r"[^\d;+-]{0,25}(?P<number>[-+]?\d[\d.,]*)\s*(?P<unit>mm|cm|m|ft|in)(?![^\W_])"
-    r"(?:\s*(?P<side>aft|behind|abaft|astern|hinter|achterlich|derri[èe]re|forward|ahead|before|in\s+front|vor|devant)(?:\s+(?:of|the|dem|der|von|le|la|du|de))*"
-    r"\s+(?P<point>nose|bow|midships?|amidships?|hauptspant|bug|nase)(?![^\W_]))?"
+    r"(?:\s*(?:en\s+)?(?P<side>aft|behind|abaft|astern|hinter|achterlich|derri[èe]re|arri[èe]re|forward|ahead|before|in\s+front|vor|devant|avant)(?:\s+(?:of|the|dem|der|von|le|la|du|de))*"
+    r"\s+(?:l['’])?(?P<point>nose|bow|nez|[ée]trave|midships?|amidships?|hauptspant|bug|nase)(?![^\W_]))?"
 )
 
 

@@ -28,7 +28,7 @@ _OF_BODY = {
     "V": ("volume", "volume", r"V|∇", r"volume|volumen|displaced\s+volume|verdr(?:ä|ae)ngung(?:svolumen)?|volume\s+de\s+car[èe]ne|∇|nabla"),
     "wetted": ("wetted_area", "area", r"S_?w(?:et)?", r"wetted\s+(?:surface|area)(?:\s+area)?|benetzte\s+(?:ober)?fl(?:ä|ae)che|surface\s+mouill[ée]e"),
     "frontal": (
-        "frontal_area", "area", r"A_?f", r"frontal\s+area|cross[\s-]*section(?:al)?\s+area|mid(?:ship)?\s*section\s+area|stirnfl(?:ä|ae)che"
+        "frontal_area", "area", r"A_?f", r"frontal\s+area|(?:cross|mid(?:ship)?)[\s-]*section(?:al\s+area|\s+area)?|stirnfl(?:ä|ae)che"
         r"|spantfl(?:ä|ae)che|hauptspant\w*|querschnittsfl(?:ä|ae)che|ma[îi]tre[\s-]couple|surface\s+frontale|section\s+transversale",
     ),
     "lateral": (
@@ -53,7 +53,7 @@ _FACTOR = re.compile(
     rf"(?![a-z]){_RAISED}"
 )
 _HEAD = re.compile(
-    r"(?:0?[.,]5|1\s*/\s*2|½)\s*[*·×⋅]?\s*(?:rho|ρ|Rho)(?![a-z])|(?:rho|ρ)\s*/\s*2(?![\d.])|(?:0?[.,]5|½)(?=\s*[*·×⋅]?\s*(?:density|dichte))"
+    r"(?:0?[.,]5|1\s*/\s*2|½)\s*\)?\s*[*·×⋅]?\s*(?:rho|ρ|Rho)(?![a-z])|(?:rho|ρ)\s*/\s*2(?![\d.])|(?:0?[.,]5|½)(?=\s*[*·×⋅]?\s*(?:density|dichte))"
     r"|(?<![\d.^])2\s*[*·×⋅]?\s*(?:[XYZKMN]|F_?[xyz]?|M_?[xyz])\s*/\s*\(?\s*(?:rho|ρ|Rho)(?![a-z])"  # Y' = 2 Y / (rho U^2 L T)
 )
 _SAYS_BY = re.compile(
