@@ -28,7 +28,7 @@ from coeflab.tables.settings import ARM_POINT, REFERENCE, SYMMETRY, Setting, Set
 from coeflab.tables.settings_in_files import arm_by_words, known_length, point_by_words
 from coeflab.tables.words.above import of_the_test
 from coeflab.tables.words.points import CENTRE_FROM, POINT_FROM, POINT_OF, UNSAID
-from coeflab.tables.words.primes import BASIS, SIZES, area_of
+from coeflab.tables.words.primes import BASIS, LEVER, SIZES, area_of, length_of
 
 UNSAID_IN_WORDS = "; from where it does not say: taken aft of the nose"
 PLACE_ASKED = (
@@ -154,11 +154,27 @@ def _of_coefficients(raw: RawTable, offers: Sequence[Proposal], settings: Settin
     if any(f"A={OPEN}" in text for text in texts) or primes:
         yield _of_basis(raw, settings, primes)
     if any(f"L={OPEN}" in text for text in texts):
-        length = settings.get("scaling.length")
-        yield replace(_asked(LENGTH_OF, "" if length is None else str(length.value)), basis=Basis.UNSTATED)
+        yield _of_lever(raw, settings)
     if any(map(without_unit, offers)):
         both = sorted({one.why.rpartition("; ")[2] for one in offers if one.why.endswith(EITHER)})
         yield _asked(UNITS_OF, both="".join(f"{each}; " for each in both))
+
+
+def _of_lever(raw: RawTable, settings: Settings) -> Question:
+    """The length of coefficients of moments: by words over the table, else that of the primes; a volume alone leaves it open."""
+    lever, basis, known = raw.stated.get(LEVER), raw.stated.get(BASIS), settings.get("scaling.length")
+    asked = replace(_asked(LENGTH_OF, "" if known is None else str(known.value)), basis=Basis.UNSTATED)
+    words = lever or (basis if basis is not None and basis.value == "V^(2/3)" else None)
+    if words is None:
+        return asked
+    short, length = f"{words.value}: {words.place}", None
+    if words is lever and not words.contradicted:
+        length = length_of(str(words.value), known_sizes(raw, settings)[0])
+    if length is not None or (words.value == "L" and not words.contradicted):
+        default = asked.default if length is None else f"{length:.12g} m"
+        return replace(asked, default=default, why=words.place, short=short, assumed=False, basis=Basis.ELSEWHERE)
+    choices = f"{words.contradicted or words.place}: V^(1/3), L"
+    return replace(asked, default="", shown="", choices=choices, why="", short="", basis=Basis.ELSEWHERE)
 
 
 def _of_basis(raw: RawTable, settings: Settings, primes: bool) -> Question:
@@ -468,7 +484,7 @@ def _offered(q: Question, raw: RawTable, words: Mapping[str, Any]) -> Question:
         )
     if given is not None and q.key in (*SIGNS, "table.centre", "table.contains_inertia") and q.default:
         if str(given.value).casefold() in q.default.casefold():
-            return replace(q, assumed=False)  # numbers and words agree
+            return replace(q, assumed=False, why=given.place, short=given.place)  # numbers and words agree
         against = f"{given.place}, but {q.default}: {q.why}"
         return replace(
             q, default="", shown="", choices=f"{against}; {q.choices}", asks=f"{q.asks}. {against}", why=against,

@@ -24,6 +24,7 @@ from coeflab.vehicle.driving_terms import without_driving_terms
 from coeflab.vehicle.force_law import full_force, points_of, spoken
 from coeflab.vehicle.gathered import PlannedParameterFile, gathered
 from coeflab.vehicle.law_at_points import caps, held_ranges, measured_tables, with_scatter
+from coeflab.vehicle.not_in_law import not_in_law
 from coeflab.vehicle.parameter_file import CoveredRange, ParameterFile, ParameterPoint, Provenance
 from coeflab.vehicle.parameter_parts import ParameterCovariance, added_mass_record
 from coeflab.vehicle.recorded import recorded
@@ -263,7 +264,9 @@ def assemble(
         with_munk(t.about(first.reference_point), munk.get(t.campaign, 0.0)) for t in tables if t.datum == first.datum
     ]
     mine = [t for t in about if any(t.campaign in f.campaigns for f in chosen)]
-    return without_driving_terms(with_points(result, mine, chosen), lambda p: with_points(p, mine, chosen))
+    result = without_driving_terms(with_points(result, mine, chosen), lambda p: with_points(p, mine, chosen))
+    left = tuple(not_in_law(mine, spoken(result).by_component, result.scaling.length))
+    return result.model_copy(update={"findings": (*result.findings, *left)})
 
 
 def with_points(parameters: ParameterFile, tables: Sequence[ForceTable], fits: Sequence[FitResult]) -> ParameterFile:

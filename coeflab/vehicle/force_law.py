@@ -257,6 +257,8 @@ class Spoken:
     ----------
     by_table : mapping of (component, table) to set of variables
         Motions and controls that the component's terms from that table speak of.
+    by_component : mapping of component to set of variables
+        The same of all tables and of none.
     together : mapping of component to sets of variables
         Motions that one term combines.
     constants : frozenset of str
@@ -266,6 +268,7 @@ class Spoken:
     """
 
     by_table: Mapping[tuple[str, str], frozenset[str]]
+    by_component: Mapping[str, frozenset[str]]
     together: Mapping[str, tuple[frozenset[str], ...]]
     constants: frozenset[str]
     beyond_slopes: Mapping[str, frozenset[str]]
@@ -291,14 +294,16 @@ def spoken(parameters: ParameterFile) -> Spoken:
         for component in s.components:
             constants.add(component)
             parts.append((component, s.model.table, acts_in(s.model)[component], LONG))
+    by_component: dict[str, frozenset[str]] = {}
     for component, tables, moved, degree in parts:
+        by_component[component] = by_component.get(component, none) | moved
         for table in filter(None, tables.split(", ")):
             by_table[component, table] = by_table.get((component, table), none) | moved
         if len(moved) > 1:
             together[component] = (*together.get(component, ()), moved)
         if degree > (2 if component == "X" else 1):
             higher[component] = higher.get(component, none) | moved
-    return Spoken(by_table, together, frozenset(constants), higher)
+    return Spoken(by_table, by_component, together, frozenset(constants), higher)
 
 
 def force_of_tables(parameters: ParameterFile, nu: Array) -> Array | None:

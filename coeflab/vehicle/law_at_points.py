@@ -178,8 +178,8 @@ def measured_tables(
         elsewhere = {k.symbol[0] for f in others for k in f.coefficients.coefficients if k.value is not None}
         for c in COMPONENTS:
             variables = spoken.get((c, t.name))
-            if variables is None or c not in t.forces:
-                continue
+            if variables is None or c not in t.forces or (not variables and np.any(moving)):
+                continue  # rows at rest alone, of a table that moves: `coeflab.vehicle.not_in_law` has the others
             if tied:  # about another point than that of its runs a rate drifts
                 known = frozenset[str]().union(*(own for (other, _), own in spoken.items() if other == c))
                 variables |= {DRIFTS[m] for m in variables & DRIFTS.keys()} & known

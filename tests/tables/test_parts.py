@@ -140,12 +140,17 @@ def test_a_table_with_half_the_drag_of_another_asks_for_its_half(tmp_path: Path,
     assert ("attack/campaign.half_model" in left_open(form)) is asked, form.output
 
 
-def test_a_point_by_a_distance_in_one_file_and_by_its_name_in_another_is_open_for_all(tmp_path: Path) -> None:
+@pytest.mark.parametrize(
+    "of_drift", ["balance centre 2.3 m aft of nose", "LCB, 2.31 m aft of the nose", "LCB of report T-7"]
+)
+def test_a_point_by_a_distance_in_one_file_and_by_its_name_in_another_is_open_for_all(
+    tmp_path: Path, of_drift: str
+) -> None:
     """Nr' about midships from moments about a point .3 m aft of it was outside its own U95."""
     folder = tmp_path / "series"
     folder.mkdir()
     for name, words, rows_of in (
-        ("drift", "Moments about balance centre 2.3 m aft of nose", DRIFT),
+        ("drift", f"Moments about {of_drift}", DRIFT),
         ("attack", "moments about midships", ATTACK),
         ("arm", "inertia subtracted", ARM),
     ):

@@ -10,7 +10,7 @@ import pytest
 from coeflab.tables.campaign import read_campaign
 from coeflab.tables.dialect import Marks
 from coeflab.tables.low_aspect import low_aspect_slope
-from coeflab.tables.words.primes import BASIS, area_of, prime_basis
+from coeflab.tables.words.primes import BASIS, LEVER, area_of, length_of, prime_basis
 from tests.cli.test_import import invoke, left_open, table_of, without_slopes
 
 __all__ = ["without_slopes"]
@@ -45,6 +45,39 @@ FORMULAS = {
 def test_formulas_and_sentences_of_three_languages(text: str, basis: str) -> None:
     found = prime_basis([("line 1", text)], Marks())
     assert (str(found[BASIS].value) if BASIS in found else "") == basis
+
+
+@pytest.mark.parametrize(
+    ("text", "lever", "length"),
+    [("Z/(0.5 rho V^2 Vol^(2/3)), M/(0.5 rho V^2 Vol), volume 0.064 m^3", "V^(1/3)", 0.4),
+     ("Y/(0.5 rho V^2 A), N/(0.5 rho V^2 A D)", "D", None), ("N by 0.5 rho U^2 L^2 T, Y by 0.5 rho U^2 L T", "L", 4.0),
+     ("0.5 rho V^2 S_w and 0.5 rho V^2 S_w L", "L", 4.0), ("0.5 rho V^2 Vol^(2/3)", "", None), ("N/(0.5 rho V^2 L^3)", "", None)],
+)  # fmt: skip
+def test_the_length_beside_the_area_in_the_formula_of_moments(text: str, lever: str, length: float | None) -> None:
+    """An area of V^(2/3) had moments by it and the length of the primes: Nv' came out 5.3 times too large of L = 5.3 V^(1/3)."""
+    found = prime_basis([("line 1", text)], Marks())
+    assert (str(found[LEVER].value) if LEVER in found else "") == lever
+    known = {"L": 4.0} | ({"V": found["basis.volume"].value} if "basis.volume" in found else {})
+    assert length_of(lever, known) == pytest.approx(length)
+
+
+def test_moments_by_a_volume_are_not_by_the_length_of_the_primes(tmp_path: Path) -> None:
+    volume, words = 0.064, "LOA = 4 m, volume 0.064 m^3; Y/(0.5 rho V^2 Vol^(2/3))"
+    area = volume ** (2.0 / 3.0)
+    file = drift(tmp_path, words, area)
+    plain = file.read_text().replace("Y'", "CY").replace("N'", "CN")
+    file.write_text(plain)
+    known = (*KNOWN, "--set", "scaling.length=4 LOA")
+    assert left_open(invoke("import", file, "--out", tmp_path / "out", *known, "--accept")) == ["coefficients.length"]
+    file.write_text(plain.replace("; Y/", "; N/(0.5 rho V^2 Vol), Y/"))
+    done = invoke("import", file, "--out", tmp_path / "out", *known, "--accept")
+    assert done.exit_code == 0, done.output
+    assert read_campaign(tmp_path / "out" / "campaign.toml").tables[0].assumed == ()
+    by_hand = invoke(
+        "import", file, "--out", tmp_path / "said", *known, "--set", "coefficients.length=0.4 m", "--accept"
+    )
+    assert by_hand.exit_code == 0, by_hand.output
+    assert np.allclose(table_of(tmp_path / "out").forces["N"], table_of(tmp_path / "said").forces["N"], rtol=1e-12)
 
 
 def test_two_formulas_that_differ_are_open() -> None:

@@ -234,6 +234,9 @@ def test_a_setting_against_the_words_is_marked(key: str, value: object, said_of:
      ("Momentenbezugspunkt 45 % der Länge", "-0.45 L nose?", False), ("reference point 1.9 m forward of AP", "1.9 m AP", False),
      ("moments about 2100 mm aft of bow", "-2.1 m nose", False), ("reference point 0.2 m from midships", "0.2 m midship", True),
      ("reference point x = 1.2 m", "1.2 m nose?", True), ("moments about 1.2 m aft of the nose, 0.1 m below the axis", "-1.2 m nose", True),
+     ("Moments about LCB, 2.31 m aft of the nose", "-2.31 m nose", False), ("about the body; moments about LCB (2.31 m aft of FP)", "-2.31 m FP", False),
+     ("moments about the centre of gravity, x = 2.25 m aft of the nose", "-2.25 m nose", False), ("moments about LCB = 0.19 m forward of midships", "0.19 m midship", False),
+     ("Moments about LCB, at its height", "0 m nose?", True), ("moments about the body axes", "", False), ("moments about CG, 3 m/s", "", False),
      ("Moments about midships, length 4.3 m", "", False), ("moments about midships; model mass 820 kg", "", False)],
 )  # fmt: skip
 def test_a_number_for_the_point_of_the_moments(line: str, point: str, is_open: bool) -> None:
@@ -344,6 +347,10 @@ def test_a_point_of_the_arm_from_a_named_point() -> None:
 @pytest.mark.parametrize(
     ("line", "key", "value"),
     [
+        ("beta = -asin(v/U)", "axes.beta", "v = -U sin(beta)"),
+        ("drift, v' = - sin β", "axes.beta", "v = -U sin(beta)"),
+        ("β = arcsin (v/U), alpha = 0", "axes.beta", "v = +U sin(beta)"),
+        ("v=U*sin(beta)", "axes.beta", "v = +U sin(beta)"),
         ("Drift angle positive with the bow to port of the course", "axes.beta", "v = +U sin(beta)"),
         ("Drift angle positive with the bow to starboard of the course", "axes.beta", "v = -U sin(beta)"),
         ("Driftwinkel positiv: Bug nach Backbord", "axes.beta", "v = +U sin(beta)"),
@@ -362,7 +369,8 @@ def test_words_on_the_sign_of_an_angle_or_a_rate(line: str, key: str, value: str
 
 
 @pytest.mark.parametrize("line", ["R positive: centre of the circle to starboard", "Y positive to starboard, N positive bow to starboard",
-                                  "Drift angle positive to starboard", "drift angle from -10 to 10 deg, bow to port"])  # fmt: skip
+                                  "Drift angle positive to starboard", "drift angle from -10 to 10 deg, bow to port",
+                                  "delta_r positive: trailing edge to port"])  # fmt: skip
 def test_other_words_say_no_sign_of_an_angle(line: str) -> None:
     assert not {"axes.alpha", "axes.beta", TURN_OF_R} & set(said(line))
 
@@ -382,6 +390,8 @@ def test_a_sign_in_words_that_the_numbers_contradict_is_open() -> None:
 
     beta = asked_of("Drift angle positive with the bow to starboard of the course")[0]["axes.beta"]
     assert beta.default == "v = -U sin(beta)", "Y and beta have the same sign, as the words say"
+    assert "line 1" in beta.why, "the words state it: nothing is inferred from Yv' < 0"
+    assert asked_of("v = +U sin(beta)")[0]["axes.beta"].open
     beta = asked_of("Drift angle positive with the bow to port of the course")[0]["axes.beta"]
     assert beta.open
     assert "bow to port" in beta.choices

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from coeflab.core.finding import Finding, Severity
 from coeflab.core.table import as_check
+from coeflab.vehicle.not_in_law import NOT_IN_LAW
 from coeflab.vehicle.plausibility import plausibility
 from coeflab.vehicle.plausible_added_mass import LAW
 
@@ -18,6 +19,7 @@ if TYPE_CHECKING:
 
 summary = "what coeflab params check finds in the files that are written"
 citations = ("fossen2011",)
+OF_THE_LAW = ("law.driving_term_at_zero", NOT_IN_LAW)
 
 
 def check(study: Study) -> Sequence[Check]:
@@ -28,7 +30,7 @@ def check(study: Study) -> Sequence[Check]:
 def _of_file(name: str, p: ParameterFile) -> Iterator[Check]:
     """Its law at the points is a check of its own."""
     found = [c for c in plausibility(p) if c.name != LAW]
-    yield from (as_check("plausibility", f) for f in p.findings if f.code == "law.driving_term_at_zero")
+    yield from (as_check("plausibility", f) for f in p.findings if f.code in OF_THE_LAW)
     failed = [c for c in found if c.severity is Severity.FAIL]
     yield from (replace(c, subject=f"{name} {c.subject}") for c in failed)
     warned = tuple(dict.fromkeys(c.subject for c in found if c.severity is Severity.WARN))

@@ -46,7 +46,11 @@ _SIGNED = {
     "axes.alpha": (r"(?:angle\s+of\s+(?:attack|incidence)|incidence|pitch(?:\s+angle)?|trim(?:\s+angle)?|anstellwinkel|trimmwinkel|nickwinkel|angle\s+d'attaque)|alpha|α",
                    r"down(?:wards?)?|lowered|unten|bas|tief", r"up(?:wards?)?|raised|oben|hoch|haut", "w = {}U sin(alpha)"),
 }  # fmt: skip
-_RATE = r"(?-i:r)'?|yaw(?:ing)?\s+rate|rate\s+of\s+turn|turn(?:ing)?\s+rate|drehrate|drehgeschwindigkeit|giergeschwindigkeit|gierrate|vitesse\s+de\s+lacet"
+_RATE = r"(?<!_)(?-i:r)'?|yaw(?:ing)?\s+rate|rate\s+of\s+turn|turn(?:ing)?\s+rate|drehrate|drehgeschwindigkeit|giergeschwindigkeit|gierrate|vitesse\s+de\s+lacet"
+# v as a formula of the drift angle, or the angle as one of v.
+_FORMULA = re.compile(
+    r"(?i)(?<![^\W_])(?:v\W?\s*=\s*(?P<v>[-+\u2212]?)\s*(?:[^\W\d]\s*[*·]?\s*)?sin|(?P<a>beta|β)\s*=\s*(?P<b>[-+\u2212]?)\s*a\w{0,2}sin)\s*\(?\s*(?(a)v|(?:beta|β))(?![^\W_])"
+)
 _BOW = r"(?:bow|nose|bug|nase|proue|nez)"
 _FLOW = r"(?:flow|water|stream|anstr(?:ö|oe)mung|[ée]coulement)(?:\s+(?:comes?|coming|kommt|vient|is))*\s+(?:from|von|de|du)"
 
@@ -113,6 +117,10 @@ def _around(text: str, found: re.Match[str]) -> str:
 
 def signs(place: str, text: str) -> Iterator[tuple[str, Stated]]:
     """What a line says of the sign of an angle or of r: "positive with the bow to port", "r positiv nach Backbord drehend"."""
+    for m in _FORMULA.finditer(text):
+        minus = (m["v"] or m["b"] or "+") in "-\u2212"
+        formula = _SIGNED["axes.beta"][3].format("-" if minus else "+")
+        yield "axes.beta", Stated(formula, f'{place}: "{" ".join(m[0].split())}"', offered=True)
     for clause in re.split(r";|,\s|\.\s", text):
         signs = {m[1].casefold() for m in re.finditer(r"(?i)(?<![^\W_])(positi|negati)[vf]", clause)}
         if len(signs) != 1:

@@ -46,6 +46,10 @@ _AT = re.compile(
 _HEIGHT = re.compile(
     r"(?i)(?<![^\W_])(?:below|above|under|over|unter\w*|[üu]e?ber|oberhalb|sous|dessus|dessous|[yz])(?![^\W_])"
 )
+# A name of the point before its place: "about LCB, 2.31 m aft of the nose", "about the CG (x/L = 0.45 from the nose)".
+_APPOSED = re.compile(r"(?i)[^\d,(=:;]{1,30}[,(=:]\s*(?:x\s*=\s*)?")
+_ABOUT = re.compile(r"(?i)\b(?:about|around|um)\b")
+_AXIS = re.compile(r"(?i)[^.;]{0,30}\bax[ei]s\b|\s*(?:the\s+)?[xyz]\b")
 # Points at an end of the body, and to which side of them it lies.
 _ENDS = {"nose": -1.0, "FP": -1.0, "stern": 1.0, "AP": 1.0}
 _POINTS = {"mids": "midship", "amid": "midship", "haup": "midship", "maît": "midship", "mait": "midship", "nose": "nose", "bow": "nose",
@@ -130,10 +134,16 @@ def moments_point(place: str, text: str, marks: Marks) -> dict[str, Stated]:
         words = f'{place}: "{" ".join(text[begun.start() : triple.end()].split())}"'
         return {POINT_OF: Stated(tuple(map(float, triple.groups())), words, offered=True)}
     m = _AT.match(text, begun.end())
+    if m is None and (named := _APPOSED.match(text, begun.end())):
+        m = _AT.match(text, named.end())
+        m = m if m and m["point"] else None
     number = None if m is None else one_reading(m["number"].replace("\u2212", "-"), marks)
     bare = re.fullmatch(r"(?i)moment[es]*\W*", begun[0]) is not None
     if m is None or number is None or not (m["unit"] or m["share"]) or (bare and not m["point"]):
-        return {}
+        if not _ABOUT.search(begun[0]) or _AXIS.match(text, begun.end()) or datum_in_words(place, text):
+            return {}
+        words = f'{place}: "{" ".join(text[begun.start() :].split())[:60]}"'
+        return {POINT_FROM: Stated(f"0 m {UNSAID}", words, offered=True, contradicted=words)}
     words = f'{place}: "{" ".join(text[begun.start() : m.end()].split())}"'
     point = _named_point(m["point"]) if m["point"] else ""
     x, share, open_ = _place(m, number, point), _share(m), ""

@@ -9,6 +9,8 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Mapping
 
+import numpy as np
+
 from coeflab.core.errors import InputError
 from coeflab.core.units import quantity
 from coeflab.tables.dialect import Marks, one_reading
@@ -20,6 +22,7 @@ _SCALE = re.compile(
     r"(?:1\s*[:/]\s*)?(?P<scale>[1-9]\d{0,3}(?:[.,]\d{1,4})?)(?![\d:/%]|\s*(?:kN|N|m|deg|m/s)\b)"
 )
 BASIS = "basis.area"  # no key of campaign.toml: what the source's coefficients were divided by, beside 1/2 rho U^2
+LEVER = "basis.lever"  # no key: the length beside that area by which moments were divided
 # Sizes by their letters and areas by their names: dimension, letters, words.
 _OF_BODY = {
     "T": ("draught", "length", r"T", r"draughts?|drafts?|tiefgang|tirant\s+d['’]eau"),
@@ -95,13 +98,14 @@ def prime_basis(texts: Iterable[tuple[str, str]], marks: Marks) -> dict[str, Sta
             out.setdefault(
                 SCALE, Stated(float(m["scale"].replace(",", ".")), f'{place}: "{" ".join(m[0].split())}"', offered=True)
             )
-        found = _of_formula(text) or _of_sentence(text)
-        if found:
-            basis, words = found
-            given = Stated(basis, f'{place}: "{" ".join(words.split())}"', offered=True)
-            before = out.setdefault(BASIS, given)
-            if before.value != basis and not before.contradicted:
-                out[BASIS] = Stated(before.value, before.place, True, f"{before.place}, but {given.place}")
+        area = _of_formula(text) or _of_sentence(text)
+        for key, found in ((BASIS, area), (LEVER, _of_formula(text, area[0]) if area else None)):
+            if found is None:
+                continue
+            given = Stated(found[0], f'{place}: "{" ".join(found[1].split())}"', offered=True)
+            before = out.setdefault(key, given)
+            if before.value != given.value and not before.contradicted:
+                out[key] = Stated(before.value, before.place, True, f"{before.place}, but {given.place}")
     return out
 
 
@@ -117,8 +121,8 @@ def size_in(number: str, unit: str, dimension: str, marks: Marks) -> float:
         return 0.0
 
 
-def _of_formula(text: str) -> tuple[str, str] | None:
-    """The area in ``1/2 rho U^2 L T``, of forces: the first formula of a text."""
+def _of_formula(text: str, area: str = "") -> tuple[str, str] | None:
+    """The area in ``1/2 rho U^2 L T``, of forces: the first formula of a text; beside that area the length in ``1/2 rho U^2 L^2 T``, of moments."""
     for head in _HEAD.finditer(text):
         factors, end = _product(text, head.end())
         speeds = [(n, p) for n, p in factors if n in ("U", "V") and p == "2"]
@@ -126,9 +130,25 @@ def _of_formula(text: str) -> tuple[str, str] | None:
             continue
         rest = list(factors)
         rest.remove(next((s for s in speeds if s[0] == "U"), speeds[0]))
-        if basis := _basis(rest):
-            return basis, text[head.start() : end]
+        if found := _lever(rest, area) if area else _basis(rest):
+            return found, text[head.start() : end]
     return None
+
+
+def _lever(factors: list[tuple[str, str]], area: str) -> str:
+    """What a product has beside an area, a length: ``D``, ``V^(1/3)``; empty where it is none."""
+    if area == "V^(2/3)" and factors == [("V", "")]:
+        return "V^(1/3)"
+    own = next((k for k in range(len(factors)) if area and _basis(factors[k : k + 1]) == area), None)
+    if own is not None:
+        rest = [n for k, (n, p) in enumerate(factors) if k != own for _ in range(int(p) if p.isdigit() else 1)]
+    else:
+        rest = [n for n, p in factors for _ in range(int(p) if p.isdigit() else 1)]
+        for name in area.split():
+            if name not in rest:
+                return ""
+            rest.remove(name)
+    return rest[0] if len(rest) == 1 and rest[0] in "LTBD" else ""
 
 
 def _of_sentence(text: str) -> tuple[str, str] | None:
@@ -182,6 +202,19 @@ def _basis(factors: list[tuple[str, str]]) -> str:
         else:
             return ""
     return " ".join(sorted(lengths, key="LTBD".index)) if len(lengths) == 2 and "" not in lengths else ""
+
+
+def length_of(lever: str, sizes: Mapping[str, float]) -> float | None:
+    """The length of a lever, m, from sizes by their letters; None where it is not known.
+
+    Examples
+    --------
+    >>> length_of("V^(1/3)", {"V": 0.125})
+    0.5
+    """
+    if lever == "V^(1/3)":
+        return float(np.cbrt(sizes["V"])) if "V" in sizes else None
+    return sizes.get(lever)
 
 
 def area_of(basis: str, sizes: Mapping[str, float]) -> float | None:
