@@ -128,3 +128,17 @@ def hull_flow(hull: Sections, density: float, viscosity: float, speed: float) ->
         hull, density, friction, density * np.pi / 4.0 * hull.depth**2, density * np.pi / 4.0 * hull.breadth**2,
         surface, friction * surface / 2.0,
     )  # fmt: skip
+
+
+def surge(axis: Array, nu: Array) -> Array:
+    """Velocity u (n,) of the line along x through (y, z); not that of the datum where the body turns."""
+    return np.asarray(nu[:, 0] + nu[:, 4] * axis[1] - nu[:, 5] * axis[0])
+
+
+def axial(area: float, centre: Array, density: float, nu: Array, angles: dict[str, Array]) -> Array:  # noqa: ARG001
+    """Drag along x of an area, with the velocity of its centre: X, M and N of it."""
+    speed = surge(centre[1:], nu)
+    force = -0.5 * density * area * np.abs(speed) * speed
+    out = np.zeros((len(nu), 6))
+    out[:, 0], out[:, 4], out[:, 5] = force, centre[2] * force, -centre[1] * force
+    return out

@@ -69,10 +69,9 @@ def summarise(done: Merge, paths: Sequence[Path]) -> None:
 
     result, carried = done.merged, done.carried
     words = tables.interval_in_words(carried, result.parameters.conditions.speed).removesuffix(", estimate")
-    many = sum(r.after is not None for r in result.replaced)
     left = len(result.estimates)
     show.sentence(
-        f"{result.parameters.name}: {many} number{'s' * (many != 1)} from {done.source}, {left} estimate{'s' * (left != 1)} left"
+        f"{result.parameters.name}: {tables.given(result)} from {done.source}, {left} estimate{'s' * (left != 1)} left"
         f"{f'; {words}' if words else ''}."
     )
     show.text()

@@ -126,13 +126,14 @@ def new(
     bow_planes: str = "",
     body: str = "",
     out: Path = Path(),
+    force: bool = False,
     json: bool = False,
 ) -> None:
     """Write a parameter file of your own numbers.
 
     Works out the SI values, m' and the covariance. Nothing is assumed: what is not stated is not in the file. Values are
     totals: Nv' holds the Munk moment. An added mass is an acceleration derivative, "Yvdot'=-0.029". --from reads a sheet of symbols,
-    values, units and U95. A file that exists is not written over.
+    values, units and U95. A file that exists is replaced with --force alone.
     """
     import shlex
 
@@ -154,9 +155,9 @@ def new(
     if file_stem(name) != name:
         raise InputError(f'"{name}"', "a name that a file can have: letters, digits, _ and -", column="NAME")
     path = typed(out) / f"{name}.parameters.json"
-    if path.exists():
+    if path.exists() and not force:
         raise OutputError(
-            f"{path} exists. Name another, delete it, or change it: coeflab merge {path} --set SYMBOL=VALUE."
+            f"{path} exists. Name another, replace it with --force, or change it: coeflab merge {path} --set SYMBOL=VALUE."
         )
     write_all(path.parent, {path.name: result.to_json()})
     found = plausibility(result)

@@ -482,7 +482,7 @@ def _functionals(length: float, speed: float, controls: tuple[str, ...]) -> tupl
     even = np.array([0.5, 0.5, 0.0, 0.0, -1.0]) / STEP**2
     rest = np.array([0.0, 0.0, 0.0, 0.0, 1.0])
     ahead = _motions(length, speed, v=np.zeros(5))
-    out += [Functional(f"{c}0", ahead, {}, i, rest) for i, c in enumerate(COMPONENTS) if c in "XZM"]
+    out += [Functional(f"{c}0", ahead, {}, i, rest) for i, c in enumerate(COMPONENTS)]
     for m in ("v", "w", "p", "q", "r"):
         nu = _motions(length, speed, **{m: steps})
         out += [Functional(f"{c}{m}", nu, {}, i, first) for i, c in enumerate(COMPONENTS) if c != "X"]

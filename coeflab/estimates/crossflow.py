@@ -6,7 +6,7 @@ from functools import partial
 
 import numpy as np
 
-from coeflab.bodies.hull_flow import HullFlow, hull_flow, integral
+from coeflab.bodies.hull_flow import HullFlow, hull_flow, integral, surge
 from coeflab.bodies.outline import Outline
 from coeflab.core.types import Array
 from coeflab.estimates import Contribution, Water
@@ -86,7 +86,7 @@ def collected(flow: HullFlow, side: Array, down: Array) -> Array:
 def rubbed(flow: HullFlow, nu: Array, angles: dict[str, Array]) -> Array:  # noqa: ARG001 - as forces are
     """Friction across: mean over the girth of 2 v sin^2, times 1/2 rho C_F |u|."""
     side, down = across(flow, nu)
-    share = -0.5 * flow.density * flow.friction * flow.hull.girth * np.abs(nu[:, :1])
+    share = -0.5 * flow.density * flow.friction * flow.hull.girth * np.abs(surge(flow.axis, nu))[:, None]
     return collected(flow, share * side, share * down)
 
 

@@ -91,7 +91,7 @@ class FoilForce:
 
     def __call__(self, nu: Array, angles: Mapping[str, Array]) -> Array:
         """Forces about the datum, (n, 6)."""
-        ahead = nu[:, 0]
+        ahead = local(nu, self.axis)[:, 0]
         astern = ahead < 0.0
         behind = np.array([self.half, 0.0, 0.0])
         seen = local(nu, self.axis) @ self.normal
@@ -144,8 +144,8 @@ class Wash:
         """Forces about the datum, (n, 6)."""
         across = local(nu, self.ahead) @ self.source
         for control, turned in self.turned:
-            across = across + turned * nu[:, 0] * angles.get(control, np.zeros(len(nu)))
-        pressure = 0.5 * self.density * np.maximum(nu[:, 0], 0.0) * across
+            across = across + turned * local(nu, self.ahead)[:, 0] * angles.get(control, np.zeros(len(nu)))
+        pressure = 0.5 * self.density * np.maximum(local(nu, self.place)[:, 0], 0.0) * across
         out = acting(self.area * pressure, self.normal, self.place)
         out[:, 3] += self.roll * pressure
         return out

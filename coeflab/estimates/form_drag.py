@@ -6,9 +6,8 @@ from functools import partial
 
 import numpy as np
 
-from coeflab.bodies.hull_flow import hull_flow
+from coeflab.bodies.hull_flow import axial, hull_flow
 from coeflab.bodies.outline import Outline
-from coeflab.core.types import Array
 from coeflab.estimates import Contribution, Water
 
 summary = "form drag of hulls over their friction by Hoerner and by Gillmer & Johnson, drag of blunt bases by Hoerner"
@@ -44,23 +43,18 @@ def contributions(outline: Outline, water: Water) -> tuple[Contribution, ...]:
     for hull in outline.hulls:
         flow = hull_flow(hull, water.density, water.viscosity, water.speed)
         fineness, friction = hull.length / flow.diameter, flow.friction * float(flow.surface[-1])
+        place = np.array([hull.x.mean(), *flow.axis])
         outside = "" if fineness >= 3.0 else f"length over diameter {fineness:.2g} is below 3"
         two = (("Hoerner", hoerner_form, "hoerner1965", "equation 6-28"),
                ("Gillmer & Johnson", gillmer_form, "gillmer1982", "form factor of submarines"))  # fmt: skip
-        for name, form, work, place in two:
-            force = partial(_axial, form(fineness) * friction, water.density)
-            out.append(Contribution(hull.name, "form drag", f"form_drag, {name}", force, SHARE, work, place, outside))
+        for name, form, work, where in two:
+            force = partial(axial, form(fineness) * friction, place, water.density)
+            out.append(Contribution(hull.name, "form drag", f"form_drag, {name}", force, SHARE, work, where, outside))
         base, largest = float(hull.area[-1]), float(hull.area.max())
         if base > BLUNT * largest:
             area = base_drag(friction / base) * base
-            force = partial(_axial, area, water.density)
+            force = partial(axial, area, place, water.density)
             out.append(
                 Contribution(hull.name, "base drag", "form_drag", force, SHARE, "hoerner1965", "chapter 3, base drag")
             )
     return tuple(out)
-
-
-def _axial(area: float, density: float, nu: Array, angles: dict[str, Array]) -> Array:  # noqa: ARG001 - as forces are
-    out = np.zeros((len(nu), 6))
-    out[:, 0] = -0.5 * density * area * np.abs(nu[:, 0]) * nu[:, 0]
-    return out

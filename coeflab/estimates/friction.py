@@ -6,9 +6,8 @@ from functools import partial
 
 import numpy as np
 
-from coeflab.bodies.hull_flow import hull_flow
+from coeflab.bodies.hull_flow import axial, hull_flow
 from coeflab.bodies.outline import Outline
-from coeflab.core.types import Array
 from coeflab.estimates import Contribution, Water
 from coeflab.law.friction_line import friction_line
 
@@ -63,12 +62,3 @@ def contributions(outline: Outline, water: Water) -> tuple[Contribution, ...]:
         force = partial(axial, area, np.asarray(centre), water.density)
         out.append(Contribution(name, "friction", "friction", force, FOIL_SHARE, "hoerner1965", "equation 6-6"))
     return tuple(out)
-
-
-def axial(area: float, centre: Array, density: float, nu: Array, angles: dict[str, Array]) -> Array:  # noqa: ARG001
-    """Drag along x of an area, with the velocity of its centre: X, M and N of it."""
-    along = nu[:, 0] + nu[:, 4] * centre[2] - nu[:, 5] * centre[1]
-    force = -0.5 * density * area * np.abs(along) * along
-    out = np.zeros((len(nu), 6))
-    out[:, 0], out[:, 4], out[:, 5] = force, centre[2] * force, -centre[1] * force
-    return out

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from coeflab.bodies.fin_lift import carrier, fin_groups
-from coeflab.bodies.hull_flow import HullFlow, hull_flow, integral
+from coeflab.bodies.hull_flow import HullFlow, hull_flow, integral, surge
 from coeflab.bodies.outline import Outline
 from coeflab.core.types import Array, brief, locking
 from coeflab.estimates import Contribution, Water
@@ -78,7 +78,7 @@ class Shed:
         flow = self.flow
         x, (y, z) = flow.hull.x, flow.axis
         out = np.zeros((len(nu), 6))
-        ahead = np.maximum(nu[:, 0], 0.0)
+        ahead = np.maximum(surge(flow.axis, nu), 0.0)
         velocity = ((nu[:, 1] - nu[:, 3] * z, nu[:, 5]), (nu[:, 2] + nu[:, 3] * y, -nu[:, 4]))
         for row, turn, sign, mass, (still, rate) in (
             (1, 5, 1.0, self.sway, velocity[0]), (2, 4, -1.0, self.heave, velocity[1])

@@ -105,7 +105,7 @@ class InPlane:
         """Forces about the datum, (n, 6)."""
         del angles
         velocity = nu[:, :3] + np.cross(nu[:, 3:], self.centre)
-        ahead = np.maximum(nu[:, 0], 0.0)[:, None]
+        ahead = np.maximum(velocity[:, :1], 0.0)
         force = -0.5 * self.density * ahead * velocity * np.array([0.0, self.sway, self.heave])
         return np.hstack([force, np.cross(self.centre, force)])
 

@@ -55,11 +55,12 @@ class RingForce:
     def __call__(self, nu: Array, angles: dict[str, Array]) -> Array:
         """Forces about the datum, (n, 6)."""
         del angles
-        astern = (nu[:, 0] < 0.0)[:, None]
+        ahead = (nu[:, :3] + np.cross(nu[:, 3:], self.centre))[:, :1]
+        astern = ahead < 0.0
         behind = np.array([self.half, 0.0, 0.0])
         velocity = nu[:, :3] + np.cross(nu[:, 3:], np.where(astern, self.centre, self.centre - behind))
         side, down = velocity[:, 1], velocity[:, 2]
-        lift = np.abs(nu[:, 0])[:, None] * np.column_stack([np.zeros(len(nu)), self.sway * side, self.heave * down])
+        lift = np.abs(ahead) * np.column_stack([np.zeros(len(nu)), self.sway * side, self.heave * down])
         drag = np.hypot(side, down)[:, None] * self.cross * velocity * np.array([0.0, 1.0, 1.0])
         force = -0.5 * self.density * (lift + drag)
         return np.hstack([force, np.cross(np.where(astern, self.centre - behind, self.centre), force)])

@@ -17,6 +17,7 @@ class Outcome(StrEnum):
     """What the motions say of a term."""
 
     IDENTIFIED = "identified"
+    BIASED = "biased"
     EXCHANGEABLE = "exchangeable"
     NOT_NEEDED = "not needed"
     NOT_IDENTIFIABLE = "not identifiable"
@@ -26,6 +27,7 @@ class Outcome(StrEnum):
         """In words."""
         return {
             Outcome.IDENTIFIED: "needed, and no other term of the library does as well",
+            Outcome.BIASED: "needed, but neighbouring rows share their noise, and the value has its bias",
             Outcome.EXCHANGEABLE: "needed, but another term does as well, so the value is not the term's alone, and the other values of its component depend on the choice",
             Outcome.NOT_NEEDED: "excited, but zero within three times its scatter beside the other terms",
             Outcome.NOT_IDENTIFIABLE: "the series do not excite it, or only together with another term",

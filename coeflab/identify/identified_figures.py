@@ -27,6 +27,7 @@ REACH = 2.0
 CURVE = 57  # points of a drawn curve
 MARKS: dict[Outcome, dict[str, Any]] = {
     Outcome.IDENTIFIED: {"marker": "o", "markersize": 4.4, "color": COLOURS["a"]},
+    Outcome.BIASED: {"marker": "x", "markersize": 4.4, "color": COLOURS["a"]},
     Outcome.EXCHANGEABLE: {
         "marker": "o", "markersize": 4.4, "color": COLOURS["a"], "markerfacecolor": "#ffffff", "markeredgewidth": 0.9,
     },
@@ -50,8 +51,11 @@ def identified_figure(found: Identified, anchor: str) -> Figure:
         tall = BOTTOM + HEAD + ROW * max(len(rows), 1)
         figure = Drawing(figsize=(WIDTH / POINTS, tall / POINTS))
         panels = (_values(figure, rows, tall), _frequencies(figure, rows, tall))
-        names = {Outcome.IDENTIFIED: "identified", Outcome.EXCHANGEABLE: "exchangeable"}
-        marks = [Line2D([], [], linestyle="none", label=names[o], **style) for o, style in MARKS.items()]
+        marks = [
+            Line2D([], [], linestyle="none", label=o.value, **style)
+            for o, style in MARKS.items()
+            if o is not Outcome.BIASED or o in {t.outcome for t in rows}
+        ]
         marks.append(Line2D([], [], linestyle="none", label="parameter file", **FROM_FILE))
         figure.legend(
             handles=marks, loc="upper left", bbox_to_anchor=((LEFT - 8.0) / WIDTH, 1.0), ncols=3, borderpad=0.2,

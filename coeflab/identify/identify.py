@@ -163,11 +163,11 @@ def _identified(
             continue
         balance = (weak if o.form == "weak" else differenced)(series, body, c, mine, half)
         some, balanced = _component(c, mine, balance, share, parameters, body.water, o)
-        terms += [replace(t, low=None, high=None) for t in some] if shared else some
+        terms += [_biased(t) for t in some] if shared else some
         balances.append(balanced)
     return Identified(
         parameters.name, tuple(s.file for s in series), f"{o.form} form", half, o.seed, o.resamples, tuple(terms),
-        tuple(balances), (*map(remark, found), *_shared(shared, series), *_statements(series, body, moving, share, library, half, o)),
+        tuple(balances), (*map(remark, found), *_shared(shared, series), *_statements(series, body, moving, share, library, half, o, bool(shared))),
         (*(f for f in found if f.code != EDGE), *(f for s in series for f in s.findings)),
     )  # fmt: skip
 
@@ -277,6 +277,12 @@ def _result(
     )  # fmt: skip
 
 
+def _biased(term: IdentifiedTerm) -> IdentifiedTerm:
+    """Without an interval, and not as identified, where neighbouring rows share their noise."""
+    outcome = Outcome.BIASED if term.outcome is Outcome.IDENTIFIED else term.outcome
+    return replace(term, outcome=outcome, low=None, high=None)
+
+
 def _statements(
     series: Sequence[MotionSeries],
     body: Vehicle,
@@ -285,12 +291,13 @@ def _statements(
     library: Sequence[Candidate],
     half: float,
     o: Options,
+    shared: bool,
 ) -> tuple[str, ...]:
     """What was assumed, and what the series cannot show."""
-    out = [HOW, *body.water.statements]
-    if o.form == "weak":
+    out = [*body.water.statements] if shared else [HOW, *body.water.statements]
+    if o.form == "weak" and not shared:
         out.append("Even and odd rows serve each other as instruments, which removes the bias of white noise.")
-    else:
+    elif o.form != "weak":
         out.append("Central differences and plain least squares: noise biases the coefficients. Prefer the weak form.")
     coarse = {s.file: 2.0 * half / float(np.median(np.diff(s.time))) for s in series}
     for name, rows in coarse.items():

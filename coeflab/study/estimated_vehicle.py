@@ -20,11 +20,11 @@ from coeflab.bodies.orientation import require_orientation
 from coeflab.bodies.outlining import fins_along
 from coeflab.bodies.simplify.source import BODY
 from coeflab.bodies.triangulation import Triangulation
-from coeflab.core.errors import InputError
+from coeflab.core.errors import InputError, ScalingMismatchError
 from coeflab.core.files import located, stem
 from coeflab.core.machine import one_thread
 from coeflab.core.text.bounded import log_text
-from coeflab.core.texts import input_error
+from coeflab.core.texts import input_error, text_of
 from coeflab.core.types import Array
 from coeflab.core.units import positive_typed, three_typed
 from coeflab.fits import BY_DEFAULT
@@ -458,7 +458,16 @@ def given_by(name: str, base: ParameterFile, run: Callable[[Plan], Study]) -> tu
         stem(path.name), path.name, campaigns, np.array(base.reference_point.point), base.reference_point.origin,
         scaling=base.scaling, conditions=base.conditions,
     )  # fmt: skip
-    study = run(plan)
+    try:
+        study = run(plan)
+    except ScalingMismatchError as why:
+        if base.mass is None:
+            raise
+        x, y, z = np.array(base.reference_point.point) + base.mass.centre_of_gravity
+        words = text_of(
+            "vehicle.centre_from_datum", why=why, name=base.name, x=x, y=y, z=z, datum=base.reference_point.datum
+        )
+        raise ScalingMismatchError(words) from None
     if any(f.code == LEFT_OUT for fit in study.fits for f in fit.findings):
         own = run(replace(plan, reference_point=None, datum=None)) if len(campaigns) == 1 else study
         study = replace(own, tables=study.tables)

@@ -30,7 +30,8 @@ COUNTED = ("cells", "y_plus")  # numbers of a run that are no settings
 TEXT = "text"
 MOST_NAMED = 10
 _FIELD = re.compile(r"\{([^{}]*)\}")
-_SPELLING = re.compile(r"([A-Za-z]{1,8})=([-+.])")
+_SPELLING = re.compile(r"([A-Za-z]{1,8}|\*[A-Za-z]{1,8}(?!=\.))=([-+.])")
+BEHIND = "*"  # before the letters of a sign that stands behind its number
 _SCALE = re.compile(r"x([0-9]*\.?[0-9]+)")
 EXTENSION = re.compile(r"\.[A-Za-z]\w*$")
 # What a number in a name may be, by the word before it; a person confirms it.
@@ -51,7 +52,7 @@ _DIGITS = re.compile(r"([0-9]+(?:\.[0-9]+|p[0-9]+)?)")
 _RATE_UNIT = re.compile(r"(?i)_?(?:(?P<deg>deg_?p?s|dps|grad_?s)|rad_?p?s)(?![a-z])")  # behind the number of a rate
 UNNAMED = "NAME:UNIT"
 UNIT_ASKED = ":UNIT"  # degrees and radians a second differ by 57: nothing but a person says which
-SPELT = "A minus is - unless the pattern spells it: {beta:deg:m=-,p=+} reads m12 as -12 and p4 as 4; with p=. too, p2p5 as 2.5. A sign behind its number, b04P, is written in a list of runs (--runs)"
+SPELT = "A minus is - unless the pattern spells it: {beta:deg:m=-,p=+} reads m12 as -12 and p4 as 4; with p=. too, p2p5 as 2.5. {beta:deg:*P=-,*S=+} has the sign behind its number: b04P is -4"
 BETWEEN = " | "  # several patterns of names in one option
 _LONGEST, MOST_OPEN = 200, 3  # letters of a name, and asterisks and labels: each may end anywhere
 
@@ -113,7 +114,7 @@ class NamePattern:
 
     ``{NAME:UNIT}`` is a number with a point for its decimals, ``*`` any text, ``{NAME:text}`` a label. Other spellings hold
     only where the pattern has them, behind a further colon: ``{beta:deg:m=-,p=.}`` reads m2p5 as -2.5,
-    ``{beta:deg:P=-,S=+}`` P4 as -4, ``{r:rad/s:x0.01}`` 015 as 0.15. A letter may be both sign and point,
+    ``{beta:deg:P=-,S=+}`` P4 as -4, ``{beta:deg:*P=-,*S=+}`` 4P, ``{r:rad/s:x0.01}`` 015 as 0.15. A letter may be both sign and point,
     ``{beta:deg:m=-,p=+,p=.}``: before the first digit it is the sign, between digits the point.
 
     Attributes
@@ -159,8 +160,9 @@ def _spelt(text: str, spelling: _Field) -> float:
     """A number of a name; letters stand for what the pattern says."""
     plain = text.replace("\u2212", "-")
     for letters in sorted(spelling.signs, key=len, reverse=True):
-        if plain.startswith(letters):
-            plain = spelling.signs[letters] + plain.removeprefix(letters)
+        word = letters.removeprefix(BEHIND)
+        if plain.endswith(word) if letters != word else plain.startswith(word):
+            plain = spelling.signs[letters] + plain.removesuffix(word).removeprefix(word)
             break
     for letters in sorted(spelling.points, key=len, reverse=True):
         plain = plain.replace(letters, ".")
@@ -349,8 +351,10 @@ def _number_expression(f: _Field) -> str:
         return "([^/]+?)"
     points = "|".join([r"\.", *map(re.escape, f.points)])
     first = "|".join([r"\.", *(re.escape(s) for s in f.points if s not in f.signs)])
-    sign = "|".join(["[-+\u2212]", *map(re.escape, f.signs)])
-    return f"((?:{sign})?(?:[0-9]+(?:(?:{points})[0-9]+)?|(?:{first})[0-9]+))"
+    sign = "|".join(["[-+\u2212]", *(re.escape(s) for s in f.signs if not s.startswith(BEHIND))])
+    behind = "|".join(re.escape(s.removeprefix(BEHIND)) for s in f.signs if s.startswith(BEHIND))
+    plain = f"(?:[0-9]+(?:(?:{points})[0-9]+)?|(?:{first})[0-9]+)"
+    return f"({plain}(?:{behind})?|(?:{sign}){plain})" if behind else f"((?:{sign})?{plain})"
 
 
 def of_files(stated: Mapping[str, Stated]) -> dict[str, Condition]:

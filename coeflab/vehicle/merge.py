@@ -63,11 +63,14 @@ class Merged:
     replaced : tuple of Replaced
     lengths : str
         Which lengths the primes of both had, where these differ; else empty.
+    tables : tuple of str
+        Responses of the fitted tables that came.
     """
 
     parameters: ParameterFile
     replaced: tuple[Replaced, ...]
     lengths: str = ""
+    tables: tuple[str, ...] = ()
 
     @property
     def estimates(self) -> tuple[Coefficient, ...]:
@@ -178,7 +181,7 @@ def merged(
         "law_at_points": points_of(result),
         "provenance": result.provenance.model_copy(update={"notes": notes}),
     }
-    return Merged(result.model_copy(update=update), tuple(replaced), lengths)
+    return Merged(result.model_copy(update=update), tuple(replaced), lengths, tuple(m.response for m in other.models))
 
 
 def _at_conditions(theirs: CoefficientSet, other: ParameterFile, base: ParameterFile) -> CoefficientSet:

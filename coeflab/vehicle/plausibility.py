@@ -34,6 +34,7 @@ if TYPE_CHECKING:
 
 
 SMALL = 1e-4  # of the speed: a slope at zero, by central difference
+ALONG = 0.9  # of a thruster's direction: within 26 deg of x
 
 
 def plausibility(parameters: ParameterFile, signs: str = "") -> tuple[Check, ...]:
@@ -57,6 +58,26 @@ def plausibility(parameters: ParameterFile, signs: str = "") -> tuple[Check, ...
         *twice_findings(parameters),
         *(as_check(f.code.partition(".")[0].replace("_", " "), f) for f in parameters.findings if known(f)),
     )
+
+
+def _astern(p: ParameterFile) -> list[Check]:
+    """Fixed thrusters along x whose largest command pushes astern, as where the axis is that of the jet."""
+    out = []
+    for t in p.thrusters:
+        push = t.direction[0] * t.curve.at(t.curve.high)
+        along = abs(t.direction[0]) > ALONG and t.tilt_axis is None
+        if along and push < 0.0 and -push >= abs(t.curve.at(t.curve.low)):
+            out.append(
+                Check.of(
+                    "plausibility.astern",
+                    f"thruster {t.name}",
+                    Severity.NOTE,
+                    push=push,
+                    command=t.curve.high,
+                    unit=t.curve.unit,
+                )
+            )
+    return out
 
 
 def law_findings(parameters: ParameterFile) -> tuple[Check, ...]:

@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from coeflab.bodies.outline import Unseen
 from coeflab.core.errors import InputError
 from coeflab.estimates import (
     METHODS,
@@ -29,11 +30,13 @@ from tests.estimates.bodies import (
     PORT,
     RING,
     SAIL,
+    SCREW,
     STARBOARD,
     UP,
     WATER,
     body_of,
     box,
+    cut_hull,
     estimates_of,
     foil,
     outline,
@@ -138,6 +141,44 @@ def test_another_reference_point_is_the_congruence_transform() -> None:
         assert value(there, symbol) == pytest.approx(found, rel=1e-3, abs=2e-6), symbol
         # A half-width of 95 % is of each number's own sum of errors, which the transform does not know: 2.4 % in Nr.
         assert there.coefficients[symbol].u95 == pytest.approx(moved[symbol].u95, rel=0.03, abs=2e-6), symbol
+
+
+def test_no_estimate_changes_with_the_datum_of_a_shape() -> None:
+    """A mesh counts from anywhere: the same solid, moved off the axis of its file, has the same forces about the same point."""
+    off = np.array([0.7, -0.4, 0.3])
+    bluff, flat = box("pod", (-2.5, 0.3, 0.1)), Unseen("post", np.array([-1.5, 0.0, 0.3]), np.array([0.02, 0.03, 0.01]))
+    cut = cut_hull(0.2)
+    here = replace(
+        outline(SAIL, *tail(), rings=(RING,), hulls=(cut,), bluff=(bluff,), propellers=(SCREW,)), unseen=(flat,)
+    )
+    there = replace(
+        here,
+        hulls=(replace(cut, x=cut.x + off[0], centre=cut.centre + off[1:]),),
+        foils=tuple(replace(f, root=f.root + off, tip=f.tip + off, stand=f.stand + off[1:]) for f in here.foils),
+        rings=(replace(RING, centre=RING.centre + off),),
+        bluff=(replace(bluff, centre=bluff.centre + off),),
+        propellers=(replace(SCREW, centre=SCREW.centre + off),),
+        unseen=(replace(flat, centre=flat.centre + off),),
+    )
+    angles = {"dr": np.full(len(MOTION), 0.1), "ds": np.full(len(MOTION), -0.2)}
+    for name in METHODS.names():
+        ones, others = (METHODS.load(name).contributions(seen, WATER) for seen in (here, there))
+        assert [c.part for c in ones] == [c.part for c in others]
+        for c, moved in zip(ones, others, strict=True):
+            want = c.forces(MOTION, angles)
+            near = np.abs(want).max() * 1e-9 + 1e-9
+            assert shifted(moved.forces, off)(MOTION, angles) == pytest.approx(want, abs=near), (name, c.part, c.kind)
+
+
+def test_what_stands_on_one_side_yaws_a_straight_run() -> None:
+    """N0' = -y X of the drag at y, and none of two that mirror each other."""
+    one, *_, other = (f for f in tail() if f.name in ("starboard", "port"))
+    ahead = np.array([[WATER.speed, 0.0, 0.0, 0.0, 0.0, 0.0]])
+    alone = estimates_of(outline(one))
+    unit = 0.5 * WATER.density * WATER.speed**2 * alone.coefficients.scaling.length**3
+    assert alone.coefficients["N0'"].value * unit == pytest.approx(alone.forces(ahead, {})[0, 5], rel=1e-9)
+    assert alone.coefficients["N0'"].value > 0.0
+    assert "N0'" not in [c.symbol + "'" for c in estimates_of(outline(one, other)).coefficients.coefficients]
 
 
 def test_shares_add_up(appended: Estimates) -> None:

@@ -146,6 +146,24 @@ def test_a_steady_turn_does_not_tell_its_terms_apart(tmp_path: Path) -> None:
         assert not known
 
 
+def test_positions_alone_identify_nothing(clean: list[Path], tmp_path: Path) -> None:
+    """u v r of noisy x, y, psi share their noise from row to row: values without an interval are no identified ones."""
+    rng, files = np.random.default_rng(7), []
+    for file in clean[:2]:
+        head, values = columns(file)
+        names = {"t [s]": ("t [s]", 0.0), "north [m]": ("x [m]", 0.005), "east [m]": ("y [m]", 0.005), "psi [rad]": ("psi [rad]", 1e-3),
+                 "dr [rad]": ("dr [rad]", 0.0), "thrust [N]": ("thrust [N]", 0.0)}  # fmt: skip
+        rows = values[::5][:, [head.index(n) for n in names]]
+        rows = rows + rng.standard_normal(rows.shape) * [level for _, level in names.values()]
+        files.append(write(tmp_path / file.name, [new for new, _ in names.values()], rows))
+    found = identify_from(files, FILE, {})
+    assert found.found
+    assert {t.outcome for t in found.found} <= {Outcome.BIASED, Outcome.EXCHANGEABLE}
+    assert all(t.low is None and t.verdict is Verdict.NONE for t in found.terms)
+    assert not any("removes the bias" in s or s.startswith("Interval") for s in found.statements)
+    assert "biased" in identified_figure(found, "here").svg
+
+
 def test_units_of_the_file_do_not_matter(clean: list[Path], tmp_path: Path) -> None:
     other = []
     for file in noisy(clean[1:4], tmp_path, 0.01, 5):

@@ -95,6 +95,13 @@ def test_eigenvalues_of_a_straight_course_against_the_matrix_by_hand() -> None:
     wanted = sorted([*by_hand, -2.0 * 10.0 / MASS], key=lambda v: (-v.real, -v.imag))
     assert np.array(got.point.modes) == pytest.approx(np.array(wanted), abs=1e-6)
     assert got.point.growth == "stable"
+    said = "Small motions by the rigid body alone, as in air: no added mass (Yvdot', Nrdot')."
+    assert said in got.point.statements
+    assert not [
+        s
+        for s in trim(replace(craft, density=1.2), {"u": 1.0, "yaw_rate": 0.0}, starts=0).point.statements
+        if "in air" in s
+    ]
 
 
 def test_a_vehicle_that_does_not_keep_its_course_has_three_steady_motions() -> None:

@@ -13,6 +13,7 @@ from coeflab.core.axes import Datum
 from coeflab.core.errors import InputError, ScalingMismatchError
 from coeflab.law.added_mass import AddedMass
 from coeflab.law.coefficient import Status
+from coeflab.report.sections.estimates import given
 from coeflab.vehicle.comparison import coefficient_set, compare
 from coeflab.vehicle.force_law import full_force, motion_law, points_of
 from coeflab.vehicle.law_at_points import law_at_points
@@ -244,4 +245,6 @@ def test_an_estimate_goes_where_a_fitted_table_has_its_force() -> None:
     at = np.array([[1.1, 0.2, 0.0, 0.0, 0.0, 0.0]])
     ratio = base.conditions.density / law.conditions.density
     np.testing.assert_allclose(full_force(done.parameters)(at)[0, :2], ratio * full_force(law)(at)[0, :2], rtol=5e-3)
-    assert len(merged(done.parameters, law).parameters.models) == len(law.models)
+    again = merged(done.parameters, law)
+    assert len(again.parameters.models) == len(law.models)
+    assert given(again) == f"{len(law.models)} fitted tables"

@@ -10,7 +10,7 @@ import pytest
 
 import coeflab as cf
 from coeflab.api.vehicle import Vehicle
-from coeflab.core.errors import InputError
+from coeflab.core.errors import InputError, ScalingMismatchError
 from coeflab.law.coefficient import Status
 from coeflab.study.estimated_vehicle import given_by
 from coeflab.study.run import run
@@ -151,6 +151,22 @@ def test_by_campaigns_and_by_files(campaigns: str, shift: float) -> None:
         one_by_one = merged(one_by_one, given_by(name, one_by_one, run)[0]).parameters
     holds(one_by_one, shift, rows_moved=True)
     assert [f.code for f in joined.findings if f.code == "move.left_out"] == []
+
+
+def test_a_table_about_cg_is_told_where_the_vehicles_lies(campaigns: str, tmp_path: Path) -> None:
+    """From the datum: the vehicle's point 0.3 m aft of the nose and G 0.05 m ahead of it, 0.02 m below."""
+    drift = Path(campaigns.split(",", maxsplit=1)[0])
+    (tmp_path / "table.csv").write_text((drift / "table.csv").read_text())
+    (tmp_path / "campaign.toml").write_text((drift / "campaign.toml").read_text().replace('"nose"', '"cg"'))
+    vehicle = base(0.3)
+    heavy = cf.vehicle("remus100", mass=30.5).file.mass
+    vehicle = vehicle.model_copy(update={"mass": replace(heavy, centre=(0.05, 0.0, 0.02), mass_moment=0.05 * 30.5)})
+    with pytest.raises(
+        ScalingMismatchError, match=r"centre of gravity of base lies at \[-0.25, 0, 0.02\] from the nose"
+    ):
+        given_by(str(tmp_path), vehicle, run)
+    with pytest.raises(ScalingMismatchError, match=r"that of a mesh is its origin\.$"):
+        given_by(str(tmp_path), base(0.3), run)
 
 
 @pytest.mark.parametrize("shift", SHIFTS)

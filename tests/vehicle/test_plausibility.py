@@ -34,6 +34,17 @@ def test_real_vehicles_pass(suboff: Study) -> None:
         assert found(file) == {}, file.name
 
 
+def test_a_thruster_that_pushes_astern_is_named() -> None:
+    """36 N at 3000 rpm ahead, 9 N astern, the axis that of the jet; the other way round it brakes, and none is named."""
+    file = typed_file(
+        "mine", ["Yv'=-0.03"], length="1 m", length_name="LOA", speed="1 m/s", density="1000", about="cg",
+        thrusters=[f"{n}; bollard = 36 N; rate = 3000; bollard_astern = {b} N; place = -1, 0, 0; axis = {x}, 0, 0"
+                   for n, b, x in (("ahead", 9, 1), ("back", 9, -1), ("brake", 40, -1))],
+    )  # fmt: skip
+    named = [c.subject for c in plausibility(file) if c.severity is Severity.NOTE and c.subject.startswith("thruster")]
+    assert named == ["thruster back"]
+
+
 @pytest.mark.parametrize("density", [1.94, 64.0, 1.2, 998000.0])
 def test_a_density_that_is_none_of_water(density: float) -> None:
     file = second.bluerov2_heavy()

@@ -14,15 +14,16 @@ from coeflab.core.keywords import all_spoken
 from coeflab.core.machine import one_thread
 from coeflab.core.missed import suggesting
 from coeflab.core.table import Table, number
-from coeflab.core.texts import remark
+from coeflab.core.texts import remark, text_of
 from coeflab.core.types import Array, dataclass, in_angles
-from coeflab.law.symbols import CONTROLS
+from coeflab.law.symbols import COMPONENTS, CONTROLS, MOTIONS
 from coeflab.law.transforms import incidence
 from coeflab.motion.small_motions import growth
 from coeflab.motion.trajectory import outside_in_words, refusal
 from coeflab.motion.trim.operating_point import OperatingPoint, Unknown, nearest, operating_point
 from coeflab.motion.trim.steady_motion import CLIMB, MOTION, SteadyMotion, steady_motion
 from coeflab.motion.vehicle import Vehicle
+from coeflab.vehicle.imported_numbers import AIR
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -196,11 +197,13 @@ def trim(
     found = operating_point(unknowns, steady.equations, steady.left, start, starts, seed)
     values = steady.modes(found.found.point)
     state = growth(values)
+    lacking = _without_added_mass(vehicle) if found.outcome.solved else []
     refused = _refused(vehicle, steady, found)
     statements = (
         *map(remark, refused),
         *_beyond(vehicle, steady, found),
         *_unstated(vehicle, unknowns),
+        *([text_of("motion.roots_in_air", lacking=", ".join(lacking))] if lacking else []),
         *vehicle.statements,
     )
     if found.outcome.solved:
@@ -211,6 +214,14 @@ def trim(
     )
     found = replace(found, statements=tuple(dict.fromkeys(statements)))
     return Trim(steady, found, steady.state(found.found.point)[0], others, refused)
+
+
+def _without_added_mass(vehicle: Vehicle) -> list[str]:
+    """Accelerations, across and turning, that no added mass is known of; in water the roots are then those in air."""
+    if AIR[0] < vehicle.density <= AIR[1]:
+        return []
+    at = [MOTIONS.index(m) for m in vehicle.free if m in "vwqr"]
+    return [f"{COMPONENTS[i]}{MOTIONS[i]}dot'" for i in at if vehicle.water.matrix[i, i] <= 0.0]
 
 
 def _ruled(unknowns: tuple[Unknown, ...], near: Mapping[str, float]) -> tuple[Unknown, ...]:

@@ -394,6 +394,15 @@ def _methods(shape: FromShape) -> Table:
     return table_of("estimates.methods", rows)
 
 
+def given(result: Merged) -> str:
+    """How many numbers and fitted tables came from the other file."""
+    numbers = sum(r.after is not None for r in result.replaced)
+    return listed([
+        *([counted(numbers, "number")] if numbers or not result.tables else []),
+        *([counted(len(result.tables), "fitted table")] if result.tables else []),
+    ])  # fmt: skip
+
+
 def merged_table(result: Merged) -> Table:
     """What was replaced: before, after, and how far apart they are in the U95 of both."""
     rows = []
@@ -432,13 +441,10 @@ def answer_of_merge(result: Merged, moves: Sequence[Simulation], carried: Sequen
         source = "" if c is None else _status(c)
         status = "no estimate" if value is None else "" if u95 else "no U95"
         rows.append(AnswerRow(symbol, value, u95, status, source, (before.get(symbol),), anchor="coefficients"))
-    given = sum(r.after is not None for r in result.replaced)
     turn = interval_in_words(carried, p.conditions.speed).removesuffix(", estimate")
-    words = (
-        f"{p.name}: {counted(given, 'number')} replaced, {counted(left, 'estimate')} left{f'; {turn}' if turn else ''}."
-    )
+    words = f"{p.name}: {given(result)} replaced, {counted(left, 'estimate')} left{f'; {turn}' if turn else ''}."
     chips = (
-        Chip("Replaced", counted(given, "number"), Severity.PASS if given else Severity.WARN, "coefficients"),
+        Chip("Replaced", given(result), Severity.PASS, "coefficients"),
         Chip("Estimates left", str(left), Severity.NOTE, "coefficients"),
         Chip("First manoeuvre", turn or "no interval", Severity.NOTE, "manoeuvres"),
     )
