@@ -31,6 +31,7 @@ from coeflab.fits.rows.straight_runs import resistance
 from coeflab.fits.rows.sweeps import (
     FEWEST_SETTINGS,
     INCIDENCE,
+    JUMPED,
     STALLED,
     arm_shift,
     collect_points,
@@ -65,6 +66,7 @@ RATE_CAPS = (0.5, 0.75, 1.0)
 MOST_NAMED = 12  # rows that do not fit their neighbours
 UNLIKE = 0.05  # probability of as large a miss of runs by rows turned into their plane, below which those are withdrawn
 WIDER = 2.0  # U95 by a declared symmetry over that without it, above which it is withdrawn
+NEAR = 20  # settings beside rest that say by themselves what the slope is
 NODES = 41  # of the recommended curve, odd: one is at rest
 
 
@@ -91,15 +93,19 @@ def _within(limit: float, points: _Points) -> _Points:
 
 
 def _before_stall(rows: SweepRows, variable: str, length: float, points: _Points) -> _Points:
-    """The points up to where the force across the flow falls again with the angle; those beyond belong to another flow."""
+    """The points up to where the force across the flow falls again with the angle, or the reading jumps; those beyond belong to another flow."""
+    points = _between(slopes.before_jump(points[0], points[1]), points, JUMPED)
     across = {"v": "Y", "w": "Z"}.get(variable, "")
     if across not in rows.table.forces:
         return points
     x, y, *_ = collect_points(rows, across, length, np.zeros(len(rows.table)))
-    low, high = slopes.before_stall(x, y)
+    return _between(slopes.before_stall(x, y), points, STALLED)
+
+
+def _between(ends: tuple[float, float], points: _Points, why: str) -> _Points:
     margin = 1.0 + 1e-5  # settings are compared as they were rounded
-    inside = (points[0] >= low * margin) & (points[0] <= high * margin)
-    return _only(points, inside, dict.fromkeys(np.flatnonzero(~inside).tolist(), STALLED))
+    inside = (points[0] >= ends[0] * margin) & (points[0] <= ends[1] * margin)
+    return _only(points, inside, dict.fromkeys(np.flatnonzero(~inside).tolist(), why))
 
 
 def _only(points: _Points, keep: NDArray[np.bool_], why: Mapping[int, str]) -> _Points:
@@ -176,7 +182,7 @@ def _sweep(
     limit = float(np.sin(np.radians(options.largest_angle))) * (1.0 + slopes.SAME_LEVEL) if is_angle else np.inf
     every = _before_stall(rows, variable, length, _within(limit, collect_points(rows, component, length, taken_out)))
     plane, (x, y, se, labels, far), bias, withdrawn = _by_symmetry(rows, variable, parity, every)
-    odd = bool(plane) and parity == "odd"
+    odd, each = bool(plane) and parity == "odd", (x, y, se)
     if (
         last is not None
         and odd == (bool(last[0].symmetry) and last[0].parity == "odd")
@@ -208,9 +214,9 @@ def _sweep(
     by_row[origin.used] = moved
     if u95 is not None and bias:
         u95 = float(np.hypot(u95, bias * moved.sum()))
-    random = None
-    if u95 is not None and origin.design is not None:
-        random = min(2.0 * origin.noise * float(np.linalg.norm(moved * np.sqrt(origin.design.variance))), u95)
+    near = [] if value is None else _nearest(*each, target, middle, bool(plane), odd)
+    u95 = _holding(near, value, u95)
+    random = _random(origin, moved, u95)
     with_all = value
     if parity == "even" and np.any(np.isfinite(origin.without) & np.logical_not(origin.used)):
         everything = slopes.of_all_rows(origin, x, y, se)
@@ -252,7 +258,8 @@ def _sweep(
             for _, index in slopes.windows(x, limit)
             if (e := slopes.estimate(f, target, x, y, se, index)) is not None
         ),
-        sensitivity=tuple(
+        sensitivity=tuple(Sensitivity(*n) for n in reversed(near if parity == "odd" else []))
+        + tuple(
             Sensitivity(c, *((None, None) if s.design is None else (s.value, s.u95)))
             for c, s in zip(caps, ended, strict=True)
         ),
@@ -269,6 +276,39 @@ def _sweep(
         borrowed=rows.rest[0].name if rows.rest is not None and component in rows.rest[0].forces and not odd else "",
     )
     return sweep, origin
+
+
+def _nearest(
+    x: Array, y: Array, se: Array | None, target: str, middle: float | None, plane: bool, odd: bool
+) -> list[tuple[float, float, float]]:
+    """Reach, value and U95 by the rows near rest alone, of halves of the range as long as they hold `NEAR` settings.
+
+    A kink within a degree of rest (a laminar bubble) is no form of the mixture: U95 of the whole sweep passes it by, and rows enough
+    beside rest see it.
+    """
+    out, size = [], np.abs(x)
+    half = float(np.max(size, initial=0.0)) / 2.0
+    while half and len(np.unique(np.round(x[inside := size <= half] / half, 2))) >= NEAR:
+        o = origin_slope.estimate(x[inside], y[inside], None if se is None else se[inside], odd=odd)
+        mean, width = origin_slope.curve(o, np.zeros(1))
+        value, u95, _ = slopes.determined(o, target, middle, (float(mean[0]), float(width[0])), plane)
+        if value is not None and u95 is not None:
+            out.append((half, value, u95))
+        half /= 2.0
+    return out
+
+
+def _holding(near: list[tuple[float, float, float]], value: float | None, u95: float | None) -> float | None:
+    """U95 that holds the intervals of the rows near rest where these rule the value out."""
+    if value is None or u95 is None:
+        return u95
+    return max([u95, *(abs(v - value) + u for _, v, u in near if abs(v - value) > np.hypot(u, u95))])
+
+
+def _random(origin: OriginSlope, moved: Array, u95: float | None) -> float | None:
+    if u95 is None or origin.design is None:
+        return None
+    return min(2.0 * origin.noise * float(np.linalg.norm(moved * np.sqrt(origin.design.variance))), u95)
 
 
 def _by_symmetry(

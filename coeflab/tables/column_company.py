@@ -33,6 +33,8 @@ FEW_STRANGE = 2  # columns without a known name or unit that are asked one by on
 MOST_ASKED = 6  # of which more ask a person too much
 SAME = 0.1
 TURNED_APART = 0.02
+ROUNDED = 1e-4  # of the largest of lift and drag
+STILL, OF_ROUNDING = "zeros throughout", "zeros but for rounding"
 GOES_ALONG = 0.9  # correlation with a setting: a coupled rudder, not a second measurement
 VARIED = frozenset(SETTINGS) - {"speed"}  # which alone make no sweep
 FROUDE = 1.5
@@ -60,7 +62,8 @@ def proposals(
     turned = _turned_wind(raw.columns)
     pure = {folded(c.name) for c in raw.columns if c.unit in PURE} & {*vocabulary().coefficients, *vocabulary().several}
     names = {named_as(c.name).partition(" ")[0] for c in raw.columns} | {folded(c.name) for c in raw.columns} & REYNOLDS
-    for column in raw.columns:
+    of_rounding = _zeros_by_rounding(raw.columns)
+    for column in (replace(c, values=np.zeros(len(c.values))) if c.name in of_rounding else c for c in raw.columns):
         if column.name in turned:
             one = Proposal("ignore", TURNED_WIND, note=TURNED_WIND)
         else:
@@ -83,14 +86,12 @@ def proposals(
                     out[first] = Proposal("ignore", again.format(column.name))
                     taken[given.plain] = column.name
                 else:
-                    kinds = {"coefficient" in o.text for o in (one, out[first])}  # a force beside its coefficient
-                    settled = (out[first].whole and not one.whole) or len(kinds) == 2
+                    settled = _is_settled(out[first], raw.columns[first], one, column)
                     one = Proposal("ignore" * settled, again.format(taken[given.plain]))
             else:
                 taken[given.plain] = column.name
-        out.append(one)
-    if "drag" in taken and not {"side", "lift"} & set(taken) and (body := next((c for c in "YZ" if c in taken), "")):
-        out = [_or_body_force(one, taken[body], body) for one in out]
+        out.append(_still(one, column, column.name in of_rounding))
+    out = _beside_the_flow(out, taken)
     if len(doubles := [o for o in out if not o.text and o.why.endswith(" already")]) > FEW_STRANGE:
         out = [replace(o, text="ignore", note=o.why) if o in doubles else o for o in out]
     out = _without_strangers(raw, out)
@@ -110,6 +111,42 @@ def proposals(
         if {"r", "R"} <= set(taken) and column.name == taken["R"]:
             out[i] = Proposal("ignore", f"r is {taken['r']} already, U over it")
     return tuple(_without_a_doubled_flow(raw, _without_lone_errors(out)))
+
+
+def _beside_the_flow(out: list[Proposal], taken: Mapping[str, str]) -> list[Proposal]:
+    """X and Z beside lift and drag are these turned, and left; a drag beside a force of the body alone has its other reading."""
+    if {"lift", "drag"} <= taken.keys():
+        body = [
+            one.meaning is not None and one.meaning.name in ("X", "Z") and not one.meaning.error and not one.certain
+            for one in out
+        ]
+        return [
+            Proposal("ignore", GIVEN_AS_COEFFICIENTS, note=GIVEN_AS_COEFFICIENTS) if o else one
+            for one, o in zip(out, body, strict=True)
+        ]
+    if "drag" in taken and "side" not in taken and (force := next((c for c in "YZ" if c in taken), "")):
+        return [_or_body_force(one, taken[force], force) for one in out]
+    return out
+
+
+def _is_settled(before: Proposal, first: RawColumn, one: Proposal, column: RawColumn) -> bool:
+    """Whether of two columns of one meaning the first is it: it is whole, a force beside its coefficient, the same numbers, or the
+    later one is an allowance that does not vary.
+    """
+    kinds = {"coefficient" in o.text for o in (one, before)}
+    varies, later = (bool(np.ptp(np.nan_to_num(c.values)) > 0.0) for c in (first, column))
+    return (
+        (before.whole and not one.whole)
+        or len(kinds) == 2
+        or (varies and not later)
+        or _agree(column.values, first.values, ROUNDED)
+    )
+
+
+def _still(one: Proposal, column: RawColumn, rounded: bool) -> Proposal:
+    """A column of zeros that is asked is of no use to a fit."""
+    zeros = not one.text and len(column.values) > 0 and not column.is_text and not np.any(column.values)
+    return Proposal("ignore", f"{one.why}; {OF_ROUNDING if rounded else STILL}") if zeros else one
 
 
 def _is_index(column: RawColumn) -> bool:
@@ -142,11 +179,26 @@ def _without_a_doubled_flow(raw: RawTable, out: Sequence[Proposal]) -> Iterator[
     ]
     varied = {kind for kind, zero in zip(both, still, strict=True) if kind and not zero}
     for one, kind, zero in zip(out, both, still, strict=True):
-        yield (
-            Proposal("ignore", f"{one.why}; zeros throughout")
-            if kind and zero and varied and kind not in varied
-            else one
-        )
+        yield (Proposal("ignore", f"{one.why}; {STILL}") if kind and zero and varied and kind not in varied else one)
+
+
+def _zeros_by_rounding(columns: Sequence[RawColumn]) -> frozenset[str]:
+    """Names of the coefficients across the plane of a table without motion sideways that are nothing beside its forces: what rounding
+    leaves of a zero. Without a CL beside it a Cl is lift.
+    """
+    own = {c.name: named_as(c.name).partition(" ")[0] for c in columns}
+    moving = [
+        c for c in columns if own[c.name] in ("beta", "v", "r", "R", "dr") and np.ptp(np.nan_to_num(c.values)) > 0.0
+    ]
+    pure = {
+        c.name: float(np.max(np.abs(np.nan_to_num(c.values)), initial=0.0))
+        for c in columns
+        if c.unit in PURE and not c.is_text
+    }
+    largest = max((size for name, size in pure.items() if own[name] in ("lift", "drag")), default=0.0)
+    across = {name for name, what in own.items() if what in ("Y", "N", "K", "side")}
+    across |= {name for name in own if name.strip() == "CS" or (name.strip() == "Cl" and "CL" in own)}
+    return frozenset() if moving else frozenset(n for n in across & {*pure} if 0.0 < pure[n] < ROUNDED * largest)
 
 
 def _turned_wind(columns: Sequence[RawColumn]) -> frozenset[str]:
@@ -164,11 +216,11 @@ def _turned_wind(columns: Sequence[RawColumn]) -> frozenset[str]:
     return frozenset(c.name for c in others for force in (normal, axial) if _agree(np.abs(c.values), np.abs(force)))
 
 
-def _agree(one: Array, other: Array) -> bool:
-    """Whether two columns agree in every row where both are known, within `TURNED_APART` of the largest."""
+def _agree(one: Array, other: Array, within: float = TURNED_APART) -> bool:
+    """Whether two columns agree in every row where both are known, within a share of the largest."""
     both = np.isfinite(one) & np.isfinite(other)
     largest = float(np.max(one[both], initial=0.0))
-    return bool(both.sum() > FEW_STRANGE) and float(np.max(np.abs(one - other)[both])) < TURNED_APART * largest
+    return bool(both.sum() > FEW_STRANGE) and float(np.max(np.abs(one - other)[both])) < within * largest
 
 
 def _of_company(
@@ -203,6 +255,9 @@ def _of_company(
             what = "a Mach number" if is_mach else "a count"
             note = f"{what} by its values beside coefficients; {one.text[0]} [{OPEN}] if it is the moment"
             return Proposal("ignore", note, note=note)
+    alone = "drag" in names and not {"Y", "N", "side", "beta", "r"} & names
+    if bare == "v" and alone and fits(column.unit, "speed") and known.size and known.min() >= 0.0:
+        return Proposal(f"U [{column.unit}]", "its unit, over a resistance alone")
     froude = bare in ("fn", "fr") and column.unit in PURE
     if froude and known.size and 0.0 < known.min() <= known.max() < FROUDE:
         note = f"a Froude number by its values; Z [{OPEN}] if it is a force"
@@ -241,7 +296,10 @@ def _without_strangers(raw: RawTable, out: list[Proposal]) -> list[Proposal]:
 
     Nothing is left out where no force or no setting is known without them.
     """
-    strange = [i for i, one in enumerate(out) if one.why == UNKNOWN and raw.columns[i].name.strip() != "V"]
+    strange = [
+        i for i, one in enumerate(out)
+        if not one.text and one.why.startswith(UNKNOWN) and raw.columns[i].name.strip() != "V"
+    ]  # fmt: skip
     roles, many = {one.role for one in out}, len(strange) > MOST_ASKED
     if len(strange) <= FEW_STRANGE or "force" not in roles or roles.isdisjoint(VARIED | {"speed"} if many else VARIED):
         return out
@@ -253,6 +311,10 @@ def _without_strangers(raw: RawTable, out: list[Proposal]) -> list[Proposal]:
         for i in strange
         if _is_of_a_force(raw.columns[i].name, plain)
         or series[_counted(raw.columns[i].name)] > FEW_STRANGE
+        or any(
+            fits(raw.columns[i].unit, what)
+            for what in ("force", "moment", *["length"] * (not roles.isdisjoint(VARIED)))
+        )
         or not _like_a_setting(raw.columns[i].values, settings)
     }
     if roles.isdisjoint(VARIED) and len({*strange} - idle) > FEW_STRANGE:

@@ -72,7 +72,7 @@ class ColumnMap:
         cells, uncertain, ignore.
     unit : str
         Of the column; empty for the one that its file states, ``-`` for a prime or a coefficient, or what a prime is counted
-        in, such as ``1e-3``.
+        in, such as ``1e-3``; of a label the one level whose rows count, ``label [0.8]``.
     negative : bool
         Whether the column has the opposite sign.
     primed : bool
@@ -227,7 +227,7 @@ def read_column_map(text: Any) -> ColumnMap:
 def _checked(meaning: ColumnMap, text: str) -> ColumnMap:
     """The entry with its unit understood."""
     if meaning.role == "word":
-        if meaning.unit or meaning.negative or meaning.primed:
+        if (meaning.unit and meaning.name != "label") or meaning.negative or meaning.primed:
             raise input_error("tables.word_with_sign", text=shown(text), name=meaning.name)
         return meaning
     if meaning.error and (meaning.name not in FORCES or meaning.negative):

@@ -52,7 +52,7 @@ def _whole_name(column: RawColumn) -> tuple[str, str, bool]:
             return str(read_column_map(column.means)), "its format says so", True
         except InputError:
             return "label", f"its format says that it is {column.means}, which no fit uses", True
-    own = column.name.strip()
+    own = _without_symbol(column.name.strip())
     short = own.replace("′", "'").replace("’", "'")
     plain = short.removeprefix("se_").removesuffix("'")
     bare = folded(own)
@@ -91,6 +91,7 @@ def _whole_name(column: RawColumn) -> tuple[str, str, bool]:
 
 
 _IN_SYMBOLS = re.compile(r"\b[A-Za-z]['′’](?![A-Za-z])|100")  # M' and a factor are no words
+_SYMBOL = re.compile(r"[FMCRc][_A-Za-z0-9]{0,3}")
 _OF_ALL = re.compile(
     r"^(?:mean|total|avg|average)(?=..)|(?<=..)(?:total|tot|mean|avg|average|net|gesamt|mittel|mittelwert)$"
 )
@@ -129,6 +130,20 @@ def _by_unit(meanings: list[str], unit: str) -> tuple[str, str, bool]:
     spelt = vocabulary().units.get(unit.casefold(), unit)
     fitting = [m for m in meanings if m not in WORDS and fits(spelt, read_column_map(m).dimension)]
     return (fitting[0], "its name", False) if fitting else ("", f"{' or '.join(meanings)} by its name", False)
+
+
+def _without_symbol(own: str) -> str:
+    """A known name without the symbol behind it, of a force, moment or coefficient, where that says nothing else: Querkraft Fq, Lift FL."""
+    name, _, symbol = own.rpartition(" ")
+    words = vocabulary()
+    if not name or not _SYMBOL.fullmatch(symbol.strip("()[],")):
+        return own
+    of_name, of_symbol = (
+        {what for s in (words.columns, words.flow, words.coefficients) if (what := s.get(folded(text)))}
+        for text in (name, symbol)
+    )
+    also = {*words.several.get(folded(symbol), "").split()}
+    return name if of_name and (not of_symbol | also or of_name & (of_symbol | also)) else own
 
 
 def _with_symbol(own: str) -> str:

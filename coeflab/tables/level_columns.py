@@ -6,6 +6,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from coeflab.core.finding import Finding, Severity
 from coeflab.core.texts import words
@@ -14,7 +15,7 @@ from coeflab.tables.column_map import PROPELLER
 from coeflab.tables.evidence import Evidence
 from coeflab.tables.force_table import AT_REST
 from coeflab.tables.levels import APART, MOST_LEVELS, SHARE, levels_of, slopes_by_level
-from coeflab.tables.mapping import Assigned, at_higher_mach
+from coeflab.tables.mapping import Assigned, at_higher_mach, usable_rows
 from coeflab.tables.raw_table import RawColumn, RawTable
 from coeflab.tables.vocabulary import folded, vocabulary
 
@@ -37,12 +38,14 @@ def slopes_by_idle_columns(raw: RawTable, columns: Sequence[Assigned]) -> Iterat
     mach = at_higher_mach(raw, columns)[0]
     if mach:
         yield Evidence(f"rows above the lowest {mach} are left out, as a prime holds at one; {mach}=label takes all")
+    used |= {c.column.name for c in columns if c.meaning.name == "label" and c.meaning.unit}
+    rows = np.isin(np.arange(len(raw)), usable_rows(raw, columns))
     used |= {mach, *(c.name for c in raw.columns if c.is_text and vocabulary().columns.get(folded(c.name)) == "ignore")}
     for idle in (c for c in raw.columns if c.name not in used and not c.means):
         names, codes = np.unique(idle.texts, return_inverse=True) if idle.is_text else ((), idle.values)
         most = max(len(names) + 1, MOST_LEVELS)  # words are levels however many they are
         if _has_levels(numbers := replace(idle, values=codes.astype(float)), speed, most):
-            yield from _by_column(numbers, [*names], settings, columns, speed)
+            yield from _by_column(numbers, [*names], settings, columns, speed, rows)
 
 
 def _has_levels(column: RawColumn, speed: Array | None, most: int) -> bool:
@@ -67,10 +70,11 @@ def _by_column(
     settings: dict[str, Assigned],
     columns: Sequence[Assigned],
     speed: Array | None,
+    rows: NDArray[np.bool_],
 ) -> Iterator[Evidence]:
     for name, swept in settings.items():
         others = [np.abs(np.nan_to_num(c.values)) <= AT_REST for n, c in settings.items() if n != name]
-        alone = np.logical_and.reduce([*others, np.ones(len(idle.values), dtype=bool)])
+        alone = np.logical_and.reduce([*others, rows])
         for force in (c for c in columns if c.meaning.role == "force" and c.meaning.name in SWEPT[name]):
             y = force.values if force.meaning.pure or speed is None else force.values / speed**2
             found = slopes_by_level(swept.values[alone], y[alone], idle.values[alone], max(len(names), MOST_LEVELS))
@@ -79,7 +83,7 @@ def _by_column(
                 kind, size = ("slope", found.spread) if found.depends else ("offset", found.offsets)
                 given = words(Finding.of(
                     "levels.column", "table", Severity.WARN, statistic=size, threshold=SHARE, symbol=f"the {kind} of {force.meaning.name} over {name}", kind=kind,
-                    advice=f'--map "{idle.name}=label", then select = {{ "{idle.name}" = "{levels[0]}" }} in campaign.toml',
+                    advice=f'--map "{idle.name}=label [{levels[0]}]"',
                     slopes=tuple(f"{s:.3g}" for s in found.slopes[:SHOWN]), column=idle.name,
                     levels=tuple(v if len(names) else f"{float(v):.4g}" for v in levels[:SHOWN]),
                 ))  # fmt: skip

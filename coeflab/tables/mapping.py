@@ -30,9 +30,10 @@ from coeflab.tables.column_map import (
     unturned,
 )
 from coeflab.tables.columns import Columns
+from coeflab.tables.dialect import Marks
 from coeflab.tables.force_table import ForceTable
 from coeflab.tables.importers import IMPORTERS
-from coeflab.tables.levels import levels_of
+from coeflab.tables.levels import APART, levels_of
 from coeflab.tables.raw_table import RawColumn, RawTable
 from coeflab.tables.to_frd import BLANK, SAME_DENSITY, force_table, speed_of_rows
 from coeflab.tables.vocabulary import folded, vocabulary
@@ -237,9 +238,11 @@ def with_unit(raw: RawTable, column: RawColumn, meaning: ColumnMap) -> Assigned:
 
 
 def usable_rows(raw: RawTable, columns: Sequence[Assigned]) -> NDArray[np.int64]:
-    """Rows with a number in every setting, and of several Mach numbers those of the lowest."""
+    """Rows with a number in every setting, of the level that a label wants, and of several Mach numbers those of the lowest."""
     blank = [_lacking(one) for one in columns if one.meaning.role in SETTINGS]
-    return np.flatnonzero(~np.logical_or.reduce([at_higher_mach(raw, columns)[1], *blank]))
+    return np.flatnonzero(
+        ~np.logical_or.reduce([at_higher_mach(raw, columns)[1], *blank, *map(_of_another_level, columns)])
+    )
 
 
 def at_higher_mach(raw: RawTable, columns: Sequence[Assigned]) -> tuple[str, NDArray[np.bool_]]:
@@ -276,9 +279,23 @@ def without_a_setting(raw: RawTable, columns: Sequence[Assigned]) -> Iterator[st
         if blank.size:
             above = " above zero" * (one.meaning.role == "speed" and not np.all(np.isnan(one.values[blank])))
             yield f"left out, no {one.column.name}{above}: {places(raw, blank)}"
+    for one in columns:
+        if (other := np.flatnonzero(_of_another_level(one))).size:
+            yield f"left out, another {one.column.name} than {one.meaning.unit}: {places(raw, other)}"
     mach, higher = at_higher_mach(raw, columns)
     if mach:
         yield f'left out, above the lowest {mach}: {places(raw, np.flatnonzero(higher))}; --map "{mach}=label" takes all'
+
+
+def _of_another_level(one: Assigned) -> NDArray[np.bool_]:
+    """Rows of another level than a label wants; none where it wants no one."""
+    wanted, values = one.meaning.unit if one.meaning.name == "label" else "", one.column.values
+    if not wanted:
+        return np.zeros(len(values), dtype=bool)
+    number = Marks().number(wanted)
+    if one.column.texts or number is None:
+        return np.array([text.strip() != wanted for text in texts_of(one.column)], dtype=bool)
+    return ~(np.abs(values - number) <= APART / 10.0 * abs(number))
 
 
 def _lacking(one: Assigned) -> NDArray[np.bool_]:

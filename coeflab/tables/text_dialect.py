@@ -361,6 +361,18 @@ def _over_rule(line: str, rule: str, width: int) -> list[str] | None:
     return names if all(names) else None
 
 
+def _over_cells(line: str, row: str, width: int) -> list[str] | None:
+    """The names over fixed columns, each within its own; blank where a column has none; None where one is wider or most lack."""
+    cells = [m.span() for m in re.finditer(r"\S+", row)]
+    names = [""] * width
+    for word in re.finditer(r"\S+", line):
+        own = [k for k, (begin, end) in enumerate(cells) if begin - 2 <= word.start() and word.end() <= end + 1]
+        if len(cells) != width or len(own) != 1 or names[own[0]]:
+            return None
+        names[own[0]] = word[0]
+    return names if sum(map(bool, names)) > max(width / 2, FEWEST_NAMED - 1) else None
+
+
 def _head(
     lines: list[str], start: int, dialect: tuple[str, Marks, int, int], numbers: Set[int], options: Options, path: Path
 ) -> tuple[Head, list[str]]:
@@ -380,6 +392,8 @@ def _head(
         cells = _fitted(bare, delimiter, width, filled)
         if cells is None and not above:
             cells = _over_rule(lines[n - 1], ruled, width)
+            if cells is None and delimiter == " " and not remark:
+                cells = _over_cells(lines[n - 1], lines[start - 1], width)
         asked = n in (options.header, options.units)
         if (
             cells is None

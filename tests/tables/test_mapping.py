@@ -200,7 +200,7 @@ def test_what_a_column_is_reads_as_it_is_written(text: str) -> None:
 @pytest.mark.parametrize(("text", "said"), [
     ("Y [deg]", "found [deg], a unit of another dimension; expected a unit of force"),
     ("Q [N]", 'the unknown name "Q"'),
-    ("label [N]", "label without sign, prime and unit"),
+    ("-label", "label without sign, prime and unit"),
     ("beta' [-]", "a prime of X Y Z K M N u v w p q r drag side lift only"),
     ("Y' [N]", "Leave out ' for a dimensional column"),
     ("Y [-]", "Y [coefficient A=1.2 m^2]"),

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from typer.testing import CliRunner
 
+import coeflab as cf
 from coeflab.cli import app
 from coeflab.core.errors import InputError
 from coeflab.fits.rows.straight_runs import _speeds
@@ -107,6 +108,10 @@ def test_two_rows_of_names_are_both_read(tmp_path: Path) -> None:
     [
         ("Angle of drift", "beta"), ("drift ang", "beta"), ("Lift coefficient", "lift"), ("Coefficient of drag", "drag"), ("lift_coeff", "lift"),
         ("Pitching moment coefficient", "M"), ("Force in Y", "Y"), ("rate of turn", "r"), ("alfa", "alpha"), ("Leeway", "beta"), ("Cln", "N"),
+        ("Widerstandskraft Fw", "drag"), ("Auftriebsbeiwert CA", "lift"), ("Querkraft Fq", "Y"), ("Giermoment Mz", "N"), ("Lift CD", ""),
+        ("Windgeschwindigkeit", "U"), ("Fd mesuré", "drag"), ("Force de traînée", "drag"), ("Coeficiente de sustentação", "lift"),
+        ("ângulo de ataque", "alpha"), ("Arrastre", "drag"), ("momento de arfagem", "M"), ("Portanza", "lift"), ("攻角", "alpha"),
+        ("阻力系数", "drag"), ("漂角", "beta"), ("转首力矩", "N"), ("迎え角", "alpha"), ("揚力係数", "lift"),
         ("yaw rate coefficient", ""), ("lift to drag", ""), ("pressure coefficient", ""), ("moment of inertia", ""), ("run angle", ""),
     ],
 )  # fmt: skip
@@ -206,7 +211,7 @@ def test_levels_have_no_width_and_may_be_words() -> None:
     assert len(of_levels("Re", np.repeat([1e5, 2e5], 5))) == 1
     assert of_levels("Cp", np.concatenate([np.linspace(0.1, 0.14, 5), np.linspace(0.9, 0.95, 5)])) == []
     (text,) = of_levels("body", np.full(10, np.nan), ("n0012",) * 5 + ("n0021",) * 5)
-    assert 'select = { "body" = "n0012" }' in text
+    assert '--map "body=label [n0012]"' in text
 
 
 @pytest.mark.parametrize(
@@ -527,3 +532,56 @@ def test_m_beside_a_reynolds_number_is_a_mach_number(tmp_path: Path) -> None:
     rows = [f"{a},{cl},{cd},{5 + k},{1000 * k}" for k, (a, cl, cd, _) in enumerate(POLAR, 1)]
     assert texts(tmp_path / "a.csv", lines("alpha,Cl,Cd,M,Re", rows=rows))["M"] == "ignore"
     assert texts(tmp_path / "b.csv", lines("alpha,Cl,Cd,M,time", rows=rows))["M"] == "M [?]"
+
+
+def test_a_vortex_lattice_polar_asks_of_the_test_alone(tmp_path: Path) -> None:
+    """Synthetic polar in the columns of a vortex lattice code: names within fixed columns of which the last has none, zeros of rounding
+    across the plane, moments twice, forces along the body beside CL and CD. It was no table, then six questions and a refusal.
+    """
+    names = ("Beta", "Mach", "AoA", "Re/1e6", "CL", "CDo", "CDi", "CDtot", "CS", "L/D", "E", "CFx", "CFy", "CFz", "CMx", "CMy", "CMz", "CMl", "CMm", "CMn")  # fmt: skip
+    rows = []
+    for a in range(-10, 11, 2):
+        s, c = np.sin(np.radians(a)), np.cos(np.radians(a))
+        cl, cdi, cm = 4.0 * s, 0.8 * s * s, -1.5 * s
+        tiny = 1e-8 * (1 + a % 3)
+        force = (cl, 0.01, cdi, cdi + 0.01, tiny, 10.0 * s, 0.9, cdi * c - cl * s, tiny, cl * c + (cdi + 0.01) * s)
+        rows.append((0.0, 0.0, float(a), 10.0, *force, -tiny, cm, tiny, tiny, cm, -tiny, 45.0))
+    text = ["".join(f"{n:^14}" for n in names), *("".join(f"{v:14.6E}" for v in row) for row in rows)]
+    (path := tmp_path / "wing.polar").write_text("\n".join(text) + "\n")
+    (other := tmp_path / "left.polar").write_text("\n".join(["".join(f"{n:<14}" for n in names), *text[1:]]) + "\n")
+    assert importer_of(path) == "table"
+    found = texts(path, path.read_text())
+    assert {n for n, t in found.items() if t != "ignore"} == {"Beta", "AoA", "CL", "CDtot", "CMy"}
+    set_ = ["coefficients.area=1", "axes.frame=CFD", "axes.reference_point=0 from nose", "scaling.length=1 m L"]
+    asked = CliRunner().invoke(app, ["import", str(path), "--out", str(tmp_path / "out")])
+    assert "4 open" in asked.output
+    command = [
+        "import",
+        str(path),
+        "--out",
+        str(tmp_path / "out"),
+        *(w for s in set_ for w in ("--set", s)),
+        "--accept",
+    ]
+    done = CliRunner().invoke(app, command)
+    assert done.exit_code == 0, done.output
+    fitted = cf.fit(tmp_path / "out")
+    assert fitted["Zw'"].value == pytest.approx(-4.01, rel=1e-3)
+    assert fitted["Mw'"].value == pytest.approx(-1.5, rel=1e-3)
+    with pytest.raises(InputError, match="20 names over rows of 21 cells"):
+        read_raw(other, "table")
+
+
+def test_a_motion_sideways_keeps_small_forces_across(tmp_path: Path) -> None:
+    rows = [f"{b},0.0,1.0,{1e-5 * b},{2e-6 * b}" for b in ANGLES]
+    found = texts(tmp_path / "t.csv", lines("beta (deg),CL,CD,CY,Cn", rows=rows))
+    assert found["CY"].startswith("Y [coefficient")
+
+
+def test_v_over_a_resistance_alone_is_the_speed(tmp_path: Path) -> None:
+    """Of a sphere in a tunnel, in French: v was a sway velocity, and the force had no known name."""
+    rows = [f"{v};{0.0106 * v * v:.6f}".replace(".", ",") for v in (0.7, 1.6, 2.6, 3.5, 4.5)]
+    found = texts(tmp_path / "t.csv", lines("v(m/s);Fd mesuré (N)", rows=rows))
+    assert found == {"v": "U [m/s]", "Fd mesuré": "drag [N]"}
+    sway = [f"{v};{-v};{0.1 * v}".replace(".", ",") for v in (0.7, 1.6, 2.6, 3.5, 4.5)]
+    assert texts(tmp_path / "s.csv", lines("v(m/s);Fy (N);Fd (N)", rows=sway))["v"] == "v [m/s]"

@@ -16,6 +16,7 @@ from coeflab.tables.force_table import AT_REST, SAME_SIZE, ForceTable
 INCIDENCE = {"dr": "v", "ds": "w", "db": "w"}
 ASTERN = "moves astern (u <= 0): an angle beyond 90 degrees, or degrees declared as radians?"
 STALLED = "past stall: the force across the flow falls again"
+JUMPED = "beyond a jump of its reading"
 SAME_SETTING = 0.02  # a rate's prime changes with the point at which the speed is taken
 SAME_POINT = 1e-6  # of the length: rotating runs that do not drift about one point
 FEWEST_SETTINGS = 3  # for an intercept, a slope and an error

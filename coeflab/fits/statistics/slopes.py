@@ -65,6 +65,7 @@ EVEN = (
 SAME_LEVEL = 0.02
 # Of a peak; standard deviations, counted from `DENSE` settings of a side on, as fewer are farther apart than scatter; settings up to it.
 FALLEN, SCATTERS, DENSE, FEWEST_BEFORE = 0.1, 7.0, 6, 3
+STEEPER = 8.0  # a jump, than any step before
 
 
 def design(terms: tuple[str, ...], x: Array) -> Array:
@@ -185,6 +186,38 @@ def before_stall(x: Array, y: Array) -> tuple[float, float]:
         fallen &= np.append(fallen[1:], True)  # one low setting before higher ones is a bad row, no stall
         peak = int(np.argmax(size[: int(np.argmax(fallen)) + 1])) if np.any(fallen) else 0
         ends.append(side * (float(at[peak]) if peak >= FEWEST_BEFORE - 1 else np.inf))
+    return ends[0], ends[1]
+
+
+def before_jump(x: Array, y: Array) -> tuple[float, float]:
+    """The settings below and above zero, (low, high), beyond which a reading is another one and stays so; infinite where there is none.
+
+    From one setting of a side to the next it moves by over half of all that it moved before, `STEEPER` times as steeply as anywhere
+    before; of the settings beyond, two or more, none comes back half-way.
+
+    Examples
+    --------
+    >>> before_jump(np.array([0.0, 2.0, 4.0, 6.0, 8.0, 9.0, 10.0]), np.array([0.0, 0.1, 0.2, 0.3, 0.4, 0.0, 0.0]))
+    (-inf, inf)
+    >>> before_jump(np.array([0.0, 2.0, 4.0, 6.0, 8.0, 8.2, 8.4]), np.array([0.0, 0.1, 0.2, 0.3, 0.4, -0.4, -0.4]))
+    (-inf, 8.0)
+    """
+    ends = []
+    for side in (-1.0, 1.0):
+        at, group = np.unique(np.round(side * x[side * x >= 0.0], 6), return_inverse=True)
+        mean = np.bincount(group, y[side * x >= 0.0]) / np.bincount(group)
+        end = np.inf
+        for i in range(FEWEST_BEFORE, len(at) - 2):
+            move, before = mean[i + 1] - mean[i], mean[: i + 1]
+            steepest = np.max(np.abs(np.diff(before) / np.diff(at[: i + 1])))
+            beyond = (mean[i + 1 :] - mean[i]) * np.sign(move)
+            if (
+                abs(move) > max(0.5 * np.ptp(before), STEEPER * steepest * (at[i + 1] - at[i]))
+                and np.min(beyond) > abs(move) / 2.0
+            ):
+                end = float(at[i])
+                break
+        ends.append(side * end)
     return ends[0], ends[1]
 
 

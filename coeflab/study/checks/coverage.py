@@ -9,7 +9,7 @@ import numpy as np
 
 from coeflab.core.finding import Severity
 from coeflab.core.table import Check, as_check
-from coeflab.fits.rows.sweeps import FEWEST_SETTINGS, STALLED
+from coeflab.fits.rows.sweeps import FEWEST_SETTINGS, JUMPED, STALLED
 from coeflab.fits.rows.too_few import FEW_ROWS
 from coeflab.fits.statistics.diagnostics import replicate_groups
 from coeflab.fits.statistics.least_squares import factorise, solve
@@ -56,13 +56,16 @@ def _sides(s: Sweep) -> Check | None:
     return None
 
 
-def _stalled(s: Sweep) -> Check | None:
-    """Rows past a peak of the force across the flow, which no slope uses."""
-    beyond = [p.x for p in s.left_out if p.reason == STALLED]
-    if not beyond:
-        return None
-    least = min(map(abs, beyond))
-    return Check.of("coverage.stalled", f"{s.table} {s.variable}'", Severity.WARN, n=len(beyond), least=least)
+def _stalled(s: Sweep) -> list[Check]:
+    """Rows past a peak of the force across the flow, or past a jump of the reading, which no slope uses."""
+    out = []
+    for reason, code, subject in (
+        (STALLED, "stalled", f"{s.table} {s.variable}'"),
+        (JUMPED, "jumped", f"{s.campaign} {primed(s.symbol)}"),
+    ):
+        if beyond := [abs(p.x) for p in s.left_out if p.reason == reason]:
+            out.append(Check.of(f"coverage.{code}", subject, Severity.WARN, n=len(beyond), least=min(beyond)))
+    return out
 
 
 def _extrapolation(s: Sweep, tables: Sequence[ForceTable]) -> Check | None:
@@ -157,7 +160,7 @@ def check(study: Study) -> Sequence[Check]:
             if s.by_symmetry:  # a copy has the findings of its source
                 continue
             found = [
-                c for c in (_sides(s), _stalled(s), _extrapolation(s, study.tables)) if c is not None
+                c for c in (_sides(s), *_stalled(s), _extrapolation(s, study.tables)) if c is not None
             ] + replicates(s, groups)
             out += [c for c in found if c not in out]
     return out
