@@ -54,6 +54,7 @@ def plausibility(parameters: ParameterFile, signs: str = "") -> tuple[Check, ...
         *damping_findings(parameters, signs),
         *sign_findings(parameters),
         *([] if in_air(parameters) else size_findings(parameters)),
+        *_astern(parameters),
         *law_findings(parameters),
         *twice_findings(parameters),
         *(as_check(f.code.partition(".")[0].replace("_", " "), f) for f in parameters.findings if known(f)),

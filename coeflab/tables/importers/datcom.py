@@ -39,10 +39,10 @@ _NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:E[-+]?\d+)?"
 _CELL = re.compile(rf"{_NUMBER}|\*+|NDM|NA\b")
 _NAMES = re.compile(r"[01 ]\s*ALPHA\s+(C[DLN]\b.*)")
 _STATIC = {_MISSILE: re.compile(r"\s*STATIC AERODYNAMICS FOR (.+)"), _DIGITAL: re.compile(r"\s*(CHARACTERISTICS AT ANGLE OF ATTACK AND IN SIDESLIP)")}  # fmt: skip
-_QUANTITIES = {
-    "mach": rf"MACH NO\s*=\s*({_NUMBER})", "beta": rf"SIDESLIP\s*=\s*({_NUMBER})", "area": rf"REF AREA\s*=\s*({_NUMBER})",
-    "length": rf"\bREF LENGTH\s*=\s*({_NUMBER})", "lateral": rf"LAT REF LENGTH\s*=\s*({_NUMBER})", "x": rf"MOMENT CENTER\s*=\s*({_NUMBER})",
+_LABELS = {
+    "mach": "MACH NO", "beta": "SIDESLIP", "area": "REF AREA", "length": r"\bREF LENGTH", "lateral": "LAT REF LENGTH", "x": "MOMENT CENTER"
 }  # fmt: skip
+_QUANTITIES = {key: re.compile(rf"{_LABELS[key]}\s*=\s*({_NUMBER})") for key in _LABELS}
 _UNITS = {"FT": 0.3048, "M": 1.0, "IN": 0.0254, "CM": 0.01}
 _WANTED = ("ALPHA", "CL", "CD", "CN", "CA", "CM", "CY", "CLN", "CLL")
 
@@ -148,7 +148,7 @@ def _sizes(kind: str, lines: Sequence[str]) -> dict[str, float]:
     """Mach number, sideslip, and the reference quantities in m."""
     if kind == _MISSILE:
         top = "\n".join(lines[:16])
-        out = {name: _number(m[1]) for name, pattern in _QUANTITIES.items() if (m := re.search(pattern, top))}
+        out = {name: _number(m[1]) for name, pattern in _QUANTITIES.items() if (m := pattern.search(top))}
         unit = re.search(r"REF AREA\s*=\s*\S+\s+([A-Z]+)\*\*2", top)
     else:
         unit = next((m for line in lines[:14] if (m := re.search(r"([A-Z]+)\*\*2(?:\s+\1){4}\s*$", line))), None)
