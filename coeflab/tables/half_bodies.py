@@ -209,16 +209,42 @@ _HALF = re.compile(
     rf"(?i)(?<![^\W_])(?:(?:half|semi|halb(?:e[snrm]?)?|h(?:ä|ae)lfte|demi\w?|moiti[ée]|mitad|met(?:à|a)|medio|mezz[oa]|½|1/2)"
     rf"[\s_-]{{0,3}}(?:(?:an?|of|the|de[rslnm]?|de|du|del|la|le|l'|el|dello|della)[\s]{{0,3}}){{0,3}}(?:{_BODIES})"
     rf"|(?:{_SIDES}|modell|rumpf|k(?:ö|oe)rper|schiffs?)[\s-]{{0,3}}(?:half|h(?:ä|ae)lfte|moiti[ée])|symmetric\s+half|(?:semi|half)[\s-]?span\s+model"
-    rf"|(?:one|either)\s+side\s+(?:only|of\s+the\s+(?:{_BODIES}))|only\s+(?:the\s+)?(?:one|{_SIDES})\s+side|nur\s+(?:eine|die)\s+\w{{0,12}}\s?(?:seite|h(?:ä|ae)lfte)"
+    rf"|(?:one|{_SIDES})\s+side\s+only|(?:one|either)\s+side\s+(?:of\s+the\s+(?:{_BODIES}))|only\s+(?:the\s+)?(?:one|{_SIDES})\s+side|nur\s+(?:eine|die)\s+\w{{0,12}}\s?(?:seite|h(?:ä|ae)lfte)"
     rf"|symmetr(?:y|ic)[\s-]{{1,3}}(?:plane|boundary|condition|bc)s?|symmetrie(?:ebene|rand\w*)|plan\s+de\s+sym[ée]trie|reflection\s+(?:plate|plane)"
     rf"|not\s+(?:yet\s+)?(?:doubled|multiplied\s+by\s+(?:2|two))|to\s+be\s+doubled|nicht\s+verdoppelt|non\s+doubl[ée]e?s?)(?![^\W_])"
 )
+# What these words are not about: "origin in the symmetry plane", "1/2 hull length", "drift on one side only", "upper half of the table".
+_NONE = re.compile(
+    r"(?i)(?<![^\W_])(?:no|not|without|full|ohne|kein\w*|sans|scale|double[\s-]body\s+with)\s+(?:an?\s+|the\s+|une?\s+)?$"
+)
+_PLACE = re.compile(
+    r"(?i)(?:(?<![^\W_])(?:in|about|of|to|on|um|dans|à)\s+(?:the\s+|der\s+|die\s+|le\s+)?|walls?\s*:?\s*|top\s*:?\s*)$"
+)
+_OF_RUNS = re.compile(
+    r"(?i)(?:angles?|tests?|runs?|points?|sweeps?|drift|yaw|turn\w*|measured|towed)\s+(?:on|to|at|of)\s+(?:the\s+)?$"
+)
+_SIZE = re.compile(
+    r"(?i)\s+(?:length|breadth|beam|width|height|depth|diameter|radius|speed|scale|spacing|size|mass|were)s?(?![^\W_])"
+)
+_OF_ANOTHER = re.compile(rf"(?i)\s+of\s+(?!(?:an?\s+|the\s+)?(?:{_BODIES})(?![^\W_]))[^\W_]")
+
+
+def _is_of_a_body(text: str, m: re.Match[str]) -> bool:
+    before, words, after = text[: m.start()], m[0].lower(), text[m.end() :]
+    is_plane, is_side = words.startswith(("symm", "plan")), "side" in words
+    return not (
+        _NONE.search(before[-40:])
+        or (is_plane and _PLACE.search(before[-40:]))
+        or (is_side and _OF_RUNS.search(before[-40:]))
+        or (not is_plane and _SIZE.match(after))
+        or (words.endswith("half") and _OF_ANOTHER.match(after))
+    )
 
 
 def half_in_words(texts: Iterable[tuple[str, str]]) -> Stated | None:
     """What words over a table say of half of a body: ``half model``, ``Halbmodell``, ``demi-modele``; None where they do not."""
     for place, text in texts:
-        if m := _HALF.search(text):
+        if m := next((m for m in _HALF.finditer(text) if _is_of_a_body(text, m)), None):
             where = f'{place}: "{" ".join(m[0].split())}"'
             return Stated("half of the body", where, offered=True, contradicted=where)
     return None

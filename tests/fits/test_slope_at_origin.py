@@ -443,6 +443,19 @@ def test_a_kink_beside_rest_widens_the_interval(left: float, corner: float, righ
     assert moved_by_the_rest(fitted.sweep("Yv")) is not None, "a check names the shorter range"
 
 
+@pytest.mark.parametrize("units", [1, 2, 3, 6])
+def test_readings_of_a_few_units_of_the_last_digit_do_not_jump(units: int) -> None:
+    """A sweep to 16 deg whose largest reading is some units of its last decimal; a quarter of a turn of digits was a jump."""
+    x = np.radians(np.arange(-16.0, 17.0, 2.0))
+    y = np.round(units * (x / x.max()) ** 2 * 1.04) * 1e-4
+    assert slopes.before_jump(x, y) == (-np.inf, np.inf)
+
+
+def test_a_gap_of_the_settings_is_no_jump() -> None:
+    x = np.array([0.0, 1.0, 2.0, 3.0, 12.0, 15.0, 18.0])
+    assert slopes.before_jump(x, x**3) == (-np.inf, np.inf)
+
+
 def test_rows_beyond_a_jump_of_the_moment_are_left_out_of_the_moment_alone() -> None:
     """Synthetic listing whose moment lacks a part beyond 20 degrees while the force goes on: N' was 4 % off, at a U95 of 2 %."""
     degrees = [

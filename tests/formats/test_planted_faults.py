@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import re
 from pathlib import Path
+from xml.etree import ElementTree
 
 import pytest
 
 from coeflab.core.errors import InputError
 from coeflab.core.finding import Severity
+from coeflab.formats.gazebo.joined import structure_checks
 from coeflab.formats.model_files import read_model_file
 
 TORPEDO = """<sdf version="1.9"><world name="w"><gravity>0 0 -9.8</gravity><model name="t"><link name="b"><inertial><pose>0 0 -0.012 0 0 0</pose><mass>31.4</mass>
@@ -183,3 +185,19 @@ def test_what_a_torpedo_is_read_as(tmp_path: Path) -> None:
     assert p.coefficient("Ndr").value * unit == pytest.approx(-0.75 * lift, rel=1e-6)
     assert p.coefficient("Yv").value * unit == pytest.approx(-22.0 - lift, rel=1e-6)
     assert p.coefficient("Yr").value * unit == pytest.approx(4.6 + 0.75 * lift, rel=1e-6)
+
+
+def test_links_of_one_name_in_nested_models_are_no_loop() -> None:
+    """An arm's base on a vehicle's base, and two models of a world with the same links joined the other way round."""
+    plugin = '<plugin name="h"><link_name>base</link_name></plugin>'
+    nested = f"""<sdf><model name="a"><link name="base"/><model name="arm"><link name="base"/></model>
+    <joint name="j" type="fixed"><parent>base</parent><child>arm::base</child></joint>{plugin}</model></sdf>"""
+    two = f"""<sdf><world name="w"><model name="a"><link name="base"/><link name="p"/><joint name="j" type="fixed"><parent>base</parent><child>p</child></joint>
+    {plugin}</model><model name="b"><link name="base"/><link name="p"/><joint name="j" type="fixed"><parent>p</parent><child>base</child></joint></model></world></sdf>"""
+    for text in (nested, two):
+        root = ElementTree.fromstring(text)
+        assert structure_checks(root, next(root.iter("plugin")), Path("m.sdf")) == []
+    turned = ElementTree.fromstring(
+        two.replace("<parent>base</parent><child>p</child>", "<parent>p</parent><child>p</child>", 1)
+    )
+    assert [c.subject for c in structure_checks(turned, next(turned.iter("plugin")), Path("m.sdf"))] == ["joint j"]

@@ -156,3 +156,27 @@ def test_up_and_down_are_judged_only_where_they_are_declared_alike() -> None:
     drift = {"Y": -10.0 * ALPHA, "Z": 9.0 + 0.0 * ALPHA}
     assert not _asked(drift, angle="beta")
     assert _asked(drift, angle="beta", symmetry=("up-down",))
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        "origin in the symmetry plane", "x in the symmetry plane, z down", "moments about the nose in the symmetry plane",
+        "body symmetric about the symmetry plane y=0", "full model without symmetry plane", "no symmetry plane used, full domain",
+        "Full domain, no symmetry condition", "double body with symmetry plane at the waterline", "top and side walls: symmetry boundary condition",
+        "1/2 hull length", "half of hull length aft of the nose", "1/2 grid spacing", "half the mesh size", "scale 1/2 model of the AUV",
+        "half of the models were tested", "drift angles on one side only", "tests on one side only", "left half of the tank",
+        "upper half of the table", "half model length", "Ursprung in der Symmetrieebene", "no half model",
+    ],
+)  # fmt: skip
+def test_what_ordinary_words_do_not_say(words: str) -> None:
+    assert half_in_words([("line 1", words)]) is None
+
+
+@pytest.mark.parametrize(
+    "words",
+    ["with a symmetry plane", "symmetry plane at y = 0", "forces of the half model", "one half of the hull", "port side only", "mesh on one side only",
+     "left half of the hull", "upper half"],
+)  # fmt: skip
+def test_what_still_asks(words: str) -> None:
+    assert half_in_words([("line 1", words)]) is not None

@@ -118,6 +118,7 @@ KNOWN = ("--set", "axes.frame=FRD", "--set", "axes.reference_point=midship")
         ("LOA = 4 m, frontal area 0.2 m^2, forces divided by the frontal area", 0.2),
         ("LOA = 4 m; 1/2 rho U^2 L^2", 16.0),
         ("LOA = 4 m; reference area 0.5 m^2 of the fin", 0.5),
+        ("LOA = 4 m; rudder reference area 0.05 m^2; primes by L^2", 16.0),
     ],
 )
 def test_a_basis_in_words_gives_the_planted_slope(head: str, area: float, tmp_path: Path) -> None:

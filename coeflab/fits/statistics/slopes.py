@@ -66,6 +66,10 @@ SAME_LEVEL = 0.02
 # Of a peak; standard deviations, counted from `DENSE` settings of a side on, as fewer are farther apart than scatter; settings up to it.
 FALLEN, SCATTERS, DENSE, FEWEST_BEFORE = 0.1, 7.0, 6, 3
 STEEPER = 8.0  # a jump, than any step before
+RESOLVED, WIDEST_GAP = (
+    5.0,
+    3.0,
+)  # of a jump over the smallest difference of two readings; of its settings over those before
 
 
 def design(terms: tuple[str, ...], x: Array) -> Array:
@@ -193,7 +197,8 @@ def before_jump(x: Array, y: Array) -> tuple[float, float]:
     """The settings below and above zero, (low, high), beyond which a reading is another one and stays so; infinite where there is none.
 
     From one setting of a side to the next it moves by over half of all that it moved before, `STEEPER` times as steeply as anywhere
-    before; of the settings beyond, two or more, none comes back half-way.
+    before; of the settings beyond, two or more, none comes back half-way. A move of a few units of the last digit is none, nor is one
+    across a gap of the settings.
 
     Examples
     --------
@@ -202,13 +207,15 @@ def before_jump(x: Array, y: Array) -> tuple[float, float]:
     >>> before_jump(np.array([0.0, 2.0, 4.0, 6.0, 8.0, 8.2, 8.4]), np.array([0.0, 0.1, 0.2, 0.3, 0.4, -0.4, -0.4]))
     (-inf, 8.0)
     """
-    ends = []
+    ends, unit = [], np.min(np.diff(np.unique(y)), initial=np.inf)
     for side in (-1.0, 1.0):
         at, group = np.unique(np.round(side * x[side * x >= 0.0], 6), return_inverse=True)
         mean = np.bincount(group, y[side * x >= 0.0]) / np.bincount(group)
-        end = np.inf
+        end, steps = np.inf, np.diff(at)
         for i in range(FEWEST_BEFORE, len(at) - 2):
             move, before = mean[i + 1] - mean[i], mean[: i + 1]
+            if abs(move) < RESOLVED * unit or steps[i] > WIDEST_GAP * np.max(steps[:i]):
+                continue
             steepest = np.max(np.abs(np.diff(before) / np.diff(at[: i + 1])))
             beyond = (mean[i + 1 :] - mean[i]) * np.sign(move)
             if (

@@ -65,11 +65,15 @@ def _twice(root: Element) -> Iterator[Finding]:
 def _ends(root: Element) -> Iterator[Finding]:
     """Joints of links that are not there, and those that lead from a link back to itself."""
     known = _named(root, FRAMES) | {"world", MODEL}
-    above: dict[str, str] = {}
+    models = {id(j): i for i, model in enumerate(root.iter("model")) for j in model.findall("joint")}
+    trees: dict[int, dict[str, str]] = {}
     for joint in _joints(root):
         parent, child = joint_end(joint, "parent"), joint_end(joint, "child")
         if missing := tuple(one_line(n) for n in (parent, child) if n not in known):
             yield Finding.of("model.no_end", _short("joint", joint.get("name", "")), Severity.FAIL, names=missing)
+        if any("::" in (joint.findtext(end) or "") for end in ("parent", "child")):
+            continue  # a link of another model may have the same name
+        above = trees.setdefault(models.get(id(joint), -1), {})
         at, seen = parent, {child}
         while at in above and at not in seen:
             seen.add(at)
@@ -94,15 +98,16 @@ def _holders(root: Element, hydrodynamics: Element) -> Iterator[Finding]:
 
 def _bases(root: Element) -> Iterator[Finding]:
     """Poses relative to a frame that is not there, or to each other."""
-    bases = {e.get("name", ""): pose_base(e.find("pose")) for tag in FRAMES for e in root.iter(tag)}
-    known = {*bases, "world", MODEL, ""}
-    for name, base in bases.items():
-        at, seen = base, {name}
-        while at in bases and at not in seen and at and len(seen) < MOST_JOINTS:
-            seen.add(at)
-            at = bases[at]
-        if base.rpartition("::")[2] not in known or (at and at in seen):
-            yield Finding.of("model.no_base", _short("pose", name), Severity.FAIL, name=one_line(base))
+    known = {*_named(root, FRAMES), "world", MODEL, ""}
+    for scope in root.iter():
+        bases = {e.get("name", ""): pose_base(e.find("pose")) for e in scope if e.tag in FRAMES}
+        for name, base in bases.items():
+            at, seen = base, {name}
+            while at in bases and at not in seen and at and len(seen) < MOST_JOINTS:
+                seen.add(at)
+                at = bases[at]
+            if base.rpartition("::")[2] not in known or (at and at in seen):
+                yield Finding.of("model.no_base", _short("pose", name), Severity.FAIL, name=one_line(base))
 
 
 def _axes(root: Element, path: Path) -> Iterator[Finding]:

@@ -63,6 +63,9 @@ _SIZES = {
         ("inertia.mass", r"(?:model\s+)?mass(?:e?\s+of\s+the\s+model)?|(?:modell)?masse(?:\s+du\s+mod[èe]le)?", "kg|t"),
     )
 }  # fmt: skip
+_OF_A_PART = re.compile(
+    r"(?i)(?:rudder|fin|hydroplane|propeller|elevator|ruder|flosse|gouvernail)s?['’]?s?\s+$"
+)  # a wing's is that of its model
 _ANOTHER_SPEED = re.compile(r"(?i)(?:wind|shaft|sound|propeller|rotor|tip|angular|rotation\w*|air|turn\w*)\s+$")
 _SEVERAL = re.compile(r"(?i)\s*(?:,|/|and|und|et|to|bis|or|oder)\s*\d[\d.,]*\s*(?:m/s|kn|km/h)?")
 _BY_VOLUME = re.compile(
@@ -240,6 +243,8 @@ def _sizes(text: str, marks: Marks) -> Iterator[tuple[str, str, float, str]]:
     lengths = [(key, m) for key, words in _SIZES.items() for m in words.finditer(text)]
     for key, m in lengths:
         if key == "conditions.speed" and (_ANOTHER_SPEED.search(text[: m.start()]) or _SEVERAL.match(text[m.end() :])):
+            continue
+        if key == "coefficients.area" and _OF_A_PART.search(text[: m.start()]):
             continue
         if size := size_in(m["number"], m["unit"] or "", _DIMENSIONS[key], marks):
             short = folded(m["name"])
