@@ -349,6 +349,8 @@ class Check:
         Whose rows it is on; empty where it is on no rows, the table where it is on the whole campaign.
     finding : Finding or None
         The same as data, where its words are of a template.
+    symbol : str
+        Where it is on one coefficient of the campaign alone.
     """
 
     name: str
@@ -360,6 +362,7 @@ class Check:
     campaign: str = ""
     table: str = ""
     finding: Finding | None = None
+    symbol: str = ""
 
     @classmethod
     def of(cls, code: str, subject: str, severity: Severity, **facts: Any) -> Check:

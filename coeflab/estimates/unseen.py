@@ -51,16 +51,15 @@ class HalfWidth:
     def __call__(self, nu: Array, angles: dict[str, Array]) -> Array:
         """Forces about the datum, (n, 6)."""
         del angles
-        velocity = (nu[:, :3] + np.cross(nu[:, 3:], self.centre))[:, self.row]
+        own = nu[:, :3] + np.cross(nu[:, 3:], self.centre)
+        ahead, velocity = np.abs(own[:, 0]), own[:, self.row]
         force = np.zeros((len(nu), 3))
-        force[:, self.row] = (
-            -0.5 * self.density * (self.lift * np.abs(nu[:, 0]) + self.drag * np.abs(velocity)) * velocity
-        )
+        force[:, self.row] = -0.5 * self.density * (self.lift * ahead + self.drag * np.abs(velocity)) * velocity
         return np.hstack([force, np.cross(self.centre, force)])
 
 
 def contributions(outline: Outline, water: Water) -> tuple[Contribution, ...]:
-    """HalfWidth-widths of every unseen area, and of the lift of bluff parts beside a hull.
+    """Half-widths of every unseen area, and of the lift of bluff parts beside a hull.
 
     Parameters
     ----------

@@ -107,8 +107,8 @@ def _columns(study: Study) -> PublishedColumns:
     body = next((b for b in (*(r.body for r in quoted), *bodies) if b), next(iter(campaigns.values()), ""))
     of_body = [r for r in quoted if r.body == body]
     first = [r for r in ours if any(campaigns.get(c) == body for c in r.campaigns)]
-    judged = {c.coefficient.symbol for c in study.comparisons if c.passed is not None}
-    if any(r.printed(symbol) is not None for r in of_body for symbol in judged):
+    judged = {c.coefficient.symbol for c in study.comparisons if c.passed is not None} & set(_wanted(study, body))
+    if judged and all(any(r.printed(symbol) is not None for r in of_body) for symbol in judged):
         first = []  # the quoted columns print what the re-analyses are judged by
     others = [r for r in study.references if r.relation is Relation.CROSS_BODY]
     fit = next((f for f in study.fits if f.body == body), None)
@@ -272,8 +272,9 @@ def _sentence(study: Study, publications: PublishedColumns, rows: tuple[AnswerRo
     elif not valued:
         first = f"{name}: no wanted coefficient could be determined"
     else:
-        failing = {c.campaign for c in study.checks if c.severity is Severity.FAIL}
-        every, valued = valued, [r for r in valued if r.source not in failing]
+        failing = {(c.campaign, c.symbol) for c in study.checks if c.severity is Severity.FAIL}
+        every = valued
+        valued = [r for r in valued if failing.isdisjoint([(r.source, ""), (r.source, r.symbol)])]
         bounded = sum(r.u95 is not None for r in valued)
         of = (
             {1: "the", 2: "both"}.get(len(rows), f"all {spelled_out(len(rows))}")

@@ -165,9 +165,11 @@ def test_no_estimate_changes_with_the_datum_of_a_shape() -> None:
         ones, others = (METHODS.load(name).contributions(seen, WATER) for seen in (here, there))
         assert [c.part for c in ones] == [c.part for c in others]
         for c, moved in zip(ones, others, strict=True):
-            want = c.forces(MOTION, angles)
-            near = np.abs(want).max() * 1e-9 + 1e-9
-            assert shifted(moved.forces, off)(MOTION, angles) == pytest.approx(want, abs=near), (name, c.part, c.kind)
+            pairs = ((c.forces, moved.forces), *zip(c.scatter, moved.scatter, strict=True))
+            for one, other in pairs:
+                want = one(MOTION, angles)
+                near = np.abs(want).max() * 1e-9 + 1e-9
+                assert shifted(other, off)(MOTION, angles) == pytest.approx(want, abs=near), (name, c.part, c.kind)
 
 
 def test_what_stands_on_one_side_yaws_a_straight_run() -> None:

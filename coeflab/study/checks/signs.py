@@ -41,7 +41,7 @@ def check(study: Study) -> Sequence[Check]:
     for c in study.coefficients:
         angle = assumed.get((c.campaign or "", c.symbol.removesuffix("'")))
         found = _signed(c.campaign, c, "") if angle is None else _inferred(c, angle)
-        out += [] if found is None else [replace(found, campaign=c.campaign or "")]
+        out += [] if found is None else [replace(found, campaign=c.campaign or "", symbol=c.symbol)]
     for name, file in study.parameter_files.items():
         for stated in (c for c in file.coefficients if c.origin == "literature"):
             found = _signed(name, stated, f"Stated in {stated.estimator}.")
