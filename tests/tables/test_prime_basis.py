@@ -93,7 +93,7 @@ def test_two_lengths_of_moments_in_one_line_are_open(line: str) -> None:
     stated = words_above([(1, [line])], Marks())
     assert "but line 1" in stated[LEVER].contradicted
     column = RawColumn("CN", "-", np.ones(3))
-    raw = RawTable(Path("t.csv"), (column,), np.arange(3), stated=stated)
+    raw = RawTable(Path("t.csv"), (column,), lines=np.arange(3), stated=stated)
     known = {"scaling.length": Setting(4.0, "confirmed"), "coefficients.area": Setting(2.0, "confirmed")}
     one = {q.key: q for q in interpreted(raw, {}, known, accept=True).questions}["coefficients.length"]
     assert one.open

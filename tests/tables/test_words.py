@@ -416,7 +416,7 @@ def test_a_formula_of_v_counts_in_the_axes_of_its_file(axes: str, line: str, sig
     """N = 500 sin(beta) of a sheet in FLU came out as Nv' < 0 by a formula of v to port."""
     b = np.array([-8.0, -4.0, 0.0, 4.0, 8.0])
     columns = (RawColumn("beta", "deg", b), RawColumn("N", "N m", b))
-    raw = RawTable(Path("t.csv"), columns, np.arange(5), stated=said(*(axes, line)[:: 1 if first else -1]))
+    raw = RawTable(Path("t.csv"), columns, lines=np.arange(5), stated=said(*(axes, line)[:: 1 if first else -1]))
     beta = {q.key: q for q in interpreted(raw, {}, {}, accept=True).questions}["axes.beta"]
     assert beta.default == (f"v = {sign}U sin(beta)" if sign else "")
     known = {"axes.frame": Setting(["forward", "port", "up"], "confirmed")}
