@@ -25,7 +25,7 @@ from coeflab.tables.mapping import Assigned
 from coeflab.tables.proposals import AREA, EITHER, LENGTH_OF, OPEN, UNITS_OF, Proposal
 from coeflab.tables.raw_table import HALF_MODEL, RawTable, Stated
 from coeflab.tables.settings import ARM_POINT, REFERENCE, SYMMETRY, Setting, Settings, frame_of, of_datum
-from coeflab.tables.settings_in_files import arm_by_words, known_length, point_by_words
+from coeflab.tables.settings_in_files import arm_by_words, known_length, point_by_words, with_formula
 from coeflab.tables.words.above import of_the_test
 from coeflab.tables.words.points import CENTRE_FROM, POINT_FROM, POINT_OF, UNSAID
 from coeflab.tables.words.primes import BASIS, LEVER, SIZES, area_of, length_of
@@ -133,7 +133,8 @@ def questions(
     primes : bool
         Whether a force is a prime by its name alone, so that somebody has to confirm what it was divided by.
     """
-    words = of_the_test([("its name", raw.path.resolve().name.replace("_", " "))])
+    raw = replace(raw, stated=with_formula(raw.stated, settings))
+    words = with_formula(of_the_test([("its name", raw.path.resolve().name.replace("_", " "))]), settings)
     out = [
         *_of_coefficients(raw, offers, settings, primes), *_of_axes(columns, settings, shows, likely), *_of_points(raw, settings, _holds_anywhere(columns, likely)),
         *_of_halves(raw, settings, shows), *_of_sizes(columns, settings, likely), *_of_rotation(raw, columns, settings, likely, words), *_of_source(raw),
@@ -173,7 +174,9 @@ def _of_lever(raw: RawTable, settings: Settings) -> Question:
     if length is not None or (words.value == "L" and not words.contradicted):
         default = asked.default if length is None else f"{length:.12g} m"
         return replace(asked, default=default, why=words.place, short=short, assumed=False, basis=Basis.ELSEWHERE)
-    choices = f"{words.contradicted or words.place}: V^(1/3), L"
+    choices = f"{words.place}: V^(1/3), L"
+    if words.contradicted:
+        choices = str(_words()["by_column"]["choices"]).format(words=words.contradicted)
     return replace(asked, default="", shown="", choices=choices, why="", short="", basis=Basis.ELSEWHERE)
 
 

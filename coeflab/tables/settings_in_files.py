@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from contextlib import suppress
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -25,9 +27,11 @@ from coeflab.tables.settings import (
     VISCOSITY,
     Setting,
     Settings,
+    frame_of,
     of_datum,
     read_setting,
 )
+from coeflab.tables.words.axes import FORMULA
 from coeflab.tables.words.points import ARM_FROM, OF_MOMENTS, POINT_FROM, POINT_OF
 
 
@@ -104,10 +108,27 @@ def _same(key: str, value: Any, stated: Any, settings: Settings) -> bool:
     return str(value).casefold() == str(stated).casefold()
 
 
+def with_formula(stated: Mapping[str, Stated], settings: Settings) -> Mapping[str, Stated]:
+    """What words say, a formula of v as the sign of beta: v to starboard, by axes that are known; where y has no side it says nothing."""
+    given, frame = stated.get(FORMULA), frame_of(settings)
+    if frame is None and (words := stated.get("axes.frame")) and not words.contradicted:
+        frame = parse_axes(read_setting("axes.frame", words.value))
+    side = 0.0 if given is None or frame is None else frame.rotation[1, 1]
+    if given is None or not side:
+        return stated
+    formula = str(given.value) if side > 0.0 else str(given.value).translate(str.maketrans("+-", "-+"))
+    other = stated.get("axes.beta", given)
+    against = f"{other.place}, but {given.place}" if other is not given and other.value != formula else ""
+    return {
+        **stated,
+        "axes.beta": replace(given, value=formula, contradicted=other.contradicted or given.contradicted or against),
+    }
+
+
 def against_words(raw: RawTable, settings: Settings) -> list[tuple[str, str, str]]:
     """Settings that differ from what words over the table say: key, what is set, the words with their line."""
     out = []
-    for key, words in raw.stated.items():
+    for key, words in with_formula(raw.stated, settings).items():
         one = settings.get(POINT_OF if key == POINT_FROM else key)
         if (
             one is None

@@ -9,7 +9,11 @@ import pytest
 
 from coeflab.tables.campaign import read_campaign
 from coeflab.tables.dialect import Marks
+from coeflab.tables.interpretation import interpreted
 from coeflab.tables.low_aspect import low_aspect_slope
+from coeflab.tables.raw_table import RawColumn, RawTable
+from coeflab.tables.settings import Setting
+from coeflab.tables.words.above import words_above
 from coeflab.tables.words.primes import BASIS, LEVER, area_of, length_of, prime_basis
 from tests.cli.test_import import invoke, left_open, table_of, without_slopes
 
@@ -80,7 +84,25 @@ def test_moments_by_a_volume_are_not_by_the_length_of_the_primes(tmp_path: Path)
     assert np.allclose(table_of(tmp_path / "out").forces["N"], table_of(tmp_path / "said").forces["N"], rtol=1e-12)
 
 
+@pytest.mark.parametrize(
+    "line",
+    ["CY by 0.5 rho U^2 L D; CK by 0.5 rho U^2 L D^2; CN by 0.5 rho U^2 L^2 D", "Y/(0.5 rho U^2 A_f), K/(0.5 rho U^2 A_f B), N/(0.5 rho U^2 A_f L)"],
+)  # fmt: skip
+def test_two_lengths_of_moments_in_one_line_are_open(line: str) -> None:
+    """That of the roll moment was taken for the yaw moment: Nv' was 8 times too small of L = 8 D."""
+    stated = words_above([(1, [line])], Marks())
+    assert "but line 1" in stated[LEVER].contradicted
+    column = RawColumn("CN", "-", np.ones(3))
+    raw = RawTable(Path("t.csv"), (column,), lines=np.arange(3), stated=stated)
+    known = {"scaling.length": Setting(4.0, "confirmed"), "coefficients.area": Setting(2.0, "confirmed")}
+    one = {q.key: q for q in interpreted(raw, {}, known, accept=True).questions}["coefficients.length"]
+    assert one.open
+    assert "column by column" in one.choices
+
+
 def test_two_formulas_that_differ_are_open() -> None:
+    found = prime_basis([("line 1", "X by 0.5 rho L T U^2, Y by 0.5 rho U^2 L^2")], Marks())
+    assert "U^2 L^2" in found[BASIS].contradicted
     found = prime_basis([("line 1", "by 0.5 rho L T U^2"), ("line 2", "by 0.5 rho U^2 L^2")], Marks())
     assert "line 2" in found[BASIS].contradicted
 

@@ -23,7 +23,7 @@ from coeflab.tables.settings import Setting, read_in, require_one_datum
 from coeflab.tables.settings_in_files import against_words
 from coeflab.tables.several_tables import form_together
 from coeflab.tables.words.above import words_above
-from coeflab.tables.words.axes import TURN_OF_R
+from coeflab.tables.words.axes import FORMULA, TURN_OF_R
 from coeflab.tables.words.points import POINT_FROM
 from coeflab.tables.words.water import water_density
 
@@ -347,10 +347,10 @@ def test_a_point_of_the_arm_from_a_named_point() -> None:
 @pytest.mark.parametrize(
     ("line", "key", "value"),
     [
-        ("beta = -asin(v/U)", "axes.beta", "v = -U sin(beta)"),
-        ("drift, v' = - sin β", "axes.beta", "v = -U sin(beta)"),
-        ("β = arcsin (v/U), alpha = 0", "axes.beta", "v = +U sin(beta)"),
-        ("v=U*sin(beta)", "axes.beta", "v = +U sin(beta)"),
+        ("beta = -asin(v/U)", FORMULA, "v = -U sin(beta)"),
+        ("drift, v' = - sin β", FORMULA, "v = -U sin(beta)"),
+        ("β = arcsin (v/U), alpha = 0", FORMULA, "v = +U sin(beta)"),
+        ("v=U*sin(beta)", FORMULA, "v = +U sin(beta)"),
         ("Drift angle positive with the bow to port of the course", "axes.beta", "v = +U sin(beta)"),
         ("Drift angle positive with the bow to starboard of the course", "axes.beta", "v = -U sin(beta)"),
         ("Driftwinkel positiv: Bug nach Backbord", "axes.beta", "v = +U sin(beta)"),
@@ -366,6 +366,7 @@ def test_words_on_the_sign_of_an_angle_or_a_rate(line: str, key: str, value: str
     found = said(line)
     assert found[key].value == value
     assert "line 1" in found[key].place
+    assert found[key].place.count("(") == found[key].place.count(")")
 
 
 @pytest.mark.parametrize("line", ["R positive: centre of the circle to starboard", "Y positive to starboard, N positive bow to starboard",
@@ -400,6 +401,28 @@ def test_a_sign_in_words_that_the_numbers_contradict_is_open() -> None:
     assert any(
         "by the axes r > 0 turns the bow to starboard" in why for why in asked_of("", "r positive turning to port")[1]
     )
+
+
+@pytest.mark.parametrize(
+    ("axes", "line", "sign"),
+    [("x forward, y starboard, z down", "v = U sin(beta)", "+"), ("x forward, y to port, z up", "v = U sin(beta)", "-"),
+     ("x forward, y to port, z up", "beta = -asin(v/U)", "+"), ("x aft, y starboard, z up", "v = -U sin(beta)", "-"),
+     ("x aft, y port, z down", "v = U sin(beta)", "-"), ("x forward, y to port, z up", "v = U sin(beta); beta positive with the bow to starboard", "-"),
+     ("x forward, y to port, z up", "v = U sin(beta); beta positive with the bow to port", ""), ("x forward, y up, z starboard", "v = U sin(beta)", ""),
+     ("Towing tank", "v = U sin(beta)", "")],
+)  # fmt: skip
+@pytest.mark.parametrize("first", [True, False])
+def test_a_formula_of_v_counts_in_the_axes_of_its_file(axes: str, line: str, sign: str, first: bool) -> None:
+    """N = 500 sin(beta) of a sheet in FLU came out as Nv' < 0 by a formula of v to port."""
+    b = np.array([-8.0, -4.0, 0.0, 4.0, 8.0])
+    columns = (RawColumn("beta", "deg", b), RawColumn("N", "N m", b))
+    raw = RawTable(Path("t.csv"), columns, lines=np.arange(5), stated=said(*(axes, line)[:: 1 if first else -1]))
+    beta = {q.key: q for q in interpreted(raw, {}, {}, accept=True).questions}["axes.beta"]
+    assert beta.default == (f"v = {sign}U sin(beta)" if sign else "")
+    known = {"axes.frame": Setting(["forward", "port", "up"], "confirmed")}
+    if sign:  # a frame by hand goes before that in words
+        against = [key for key, *_ in against_words(raw, known | {"axes.beta": Setting(beta.default, "confirmed")})]
+        assert ("axes.beta" in against) == ("port" not in axes)
 
 
 @pytest.mark.parametrize(

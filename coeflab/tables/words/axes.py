@@ -12,6 +12,7 @@ from coeflab.core.text.patterns import atomic
 from coeflab.tables.raw_table import Stated
 
 TURN_OF_R = "columns.r"  # no key of campaign.toml: the side to which words say that a positive r turns
+FORMULA = "formula.v"  # no key: v as a formula of beta in the file's own axes, whose y may point to port
 BODY_AXES = "forces.axes"  # no key of campaign.toml: the words say that forces count along the body
 _BODY = re.compile(
     r"(?i)\b(?:k(?:ö|oe|o)rper|schiffs|boots|modell)fest|\b(?:body|ship|hull|vessel)[- ]?(?:fixed|axes|axis|frame)\b"
@@ -49,7 +50,7 @@ _SIGNED = {
 _RATE = r"(?<!_)(?-i:r)'?|yaw(?:ing)?\s+rate|rate\s+of\s+turn|turn(?:ing)?\s+rate|drehrate|drehgeschwindigkeit|giergeschwindigkeit|gierrate|vitesse\s+de\s+lacet"
 # v as a formula of the drift angle, or the angle as one of v.
 _FORMULA = re.compile(
-    r"(?i)(?<![^\W_])(?:v\W?\s*=\s*(?P<v>[-+\u2212]?)\s*(?:[^\W\d]\s*[*·]?\s*)?sin|(?P<a>beta|β)\s*=\s*(?P<b>[-+\u2212]?)\s*a\w{0,2}sin)\s*\(?\s*(?(a)v|(?:beta|β))(?![^\W_])"
+    r"(?i)(?<![^\W_])(?:v\W?\s*=\s*(?P<v>[-+\u2212]?)\s*(?:[^\W\d]\s*[*·]?\s*)?sin|(?P<a>beta|β)\s*=\s*(?P<b>[-+\u2212]?)\s*a\w{0,2}sin)\s*(?P<open>\()?\s*(?(a)v|(?:beta|β))(?![^\W_])(?(open)(?:(?:\s*/\s*U)?\s*\))?)"
 )
 _BOW = r"(?:bow|nose|bug|nase|proue|nez)"
 _FLOW = r"(?:flow|water|stream|anstr(?:ö|oe)mung|[ée]coulement)(?:\s+(?:comes?|coming|kommt|vient|is))*\s+(?:from|von|de|du)"
@@ -120,7 +121,7 @@ def signs(place: str, text: str) -> Iterator[tuple[str, Stated]]:
     for m in _FORMULA.finditer(text):
         minus = (m["v"] or m["b"] or "+") in "-\u2212"
         formula = _SIGNED["axes.beta"][3].format("-" if minus else "+")
-        yield "axes.beta", Stated(formula, f'{place}: "{" ".join(m[0].split())}"', offered=True)
+        yield FORMULA, Stated(formula, f'{place}: "{" ".join(m[0].split())}"', offered=True)
     for clause in re.split(r";|,\s|\.\s", text):
         signs = {m[1].casefold() for m in re.finditer(r"(?i)(?<![^\W_])(positi|negati)[vf]", clause)}
         if len(signs) != 1:

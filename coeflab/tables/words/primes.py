@@ -7,7 +7,7 @@ the length: draught, breadth, diameter, volume, wetted and frontal area.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 
 import numpy as np
 
@@ -98,10 +98,9 @@ def prime_basis(texts: Iterable[tuple[str, str]], marks: Marks) -> dict[str, Sta
             out.setdefault(
                 SCALE, Stated(float(m["scale"].replace(",", ".")), f'{place}: "{" ".join(m[0].split())}"', offered=True)
             )
-        area = _of_formula(text) or _of_sentence(text)
-        for key, found in ((BASIS, area), (LEVER, _of_formula(text, area[0]) if area else None)):
-            if found is None:
-                continue
+        areas = [*_of_formulas(text)] or [*filter(None, [_of_sentence(text)])]
+        levers = _of_formulas(text, areas[0][0]) if areas else ()
+        for key, found in (*((BASIS, a) for a in areas), *((LEVER, one) for one in levers)):
             given = Stated(found[0], f'{place}: "{" ".join(found[1].split())}"', offered=True)
             before = out.setdefault(key, given)
             if before.value != given.value and not before.contradicted:
@@ -121,8 +120,8 @@ def size_in(number: str, unit: str, dimension: str, marks: Marks) -> float:
         return 0.0
 
 
-def _of_formula(text: str, area: str = "") -> tuple[str, str] | None:
-    """The area in ``1/2 rho U^2 L T``, of forces: the first formula of a text; beside that area the length in ``1/2 rho U^2 L^2 T``, of moments."""
+def _of_formulas(text: str, area: str = "") -> Iterator[tuple[str, str]]:
+    """Areas in ``1/2 rho U^2 L T``, of forces, by every formula of a text; beside an area the lengths in ``1/2 rho U^2 L^2 T``, of moments."""
     for head in _HEAD.finditer(text):
         factors, end = _product(text, head.end())
         speeds = [(n, p) for n, p in factors if n in ("U", "V") and p == "2"]
@@ -131,8 +130,7 @@ def _of_formula(text: str, area: str = "") -> tuple[str, str] | None:
         rest = list(factors)
         rest.remove(next((s for s in speeds if s[0] == "U"), speeds[0]))
         if found := _lever(rest, area) if area else _basis(rest):
-            return found, text[head.start() : end]
-    return None
+            yield found, text[head.start() : end]
 
 
 def _lever(factors: list[tuple[str, str]], area: str) -> str:
