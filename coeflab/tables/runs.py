@@ -278,7 +278,7 @@ def _summary(content: Mapping[str, Any]) -> RunSummary:
     read = dict(content)
     for name in _STATED:
         read[name] = {k: Stated(tuple(v) if isinstance(v, list) else v, *how) for k, (v, *how) in read[name].items()}
-    for name in ("patches", "beside"):
+    for name in ("patches", "other_columns"):
         read[name] = {k: (float(v), unit) for k, (v, unit) in read[name].items()}
     for name in ("files", "remarks"):
         read[name] = tuple(read[name])
