@@ -200,6 +200,7 @@ def _print(study: Study, symbols: list[str]) -> None:
     from coeflab.report.tables import nouns as noun_tables
     from coeflab.report.tables import oscillations as oscillation_tables
     from coeflab.report.tables import results as tables
+    from coeflab.vehicle.not_in_law import NOT_IN_LAW
 
     found = tables.headline(study, symbols) or " ".join(oscillation_tables.headline(f) for f in study.fits)
     found = found or " ".join(tables.resistances(study))
@@ -222,7 +223,8 @@ def _print(study: Study, symbols: list[str]) -> None:
         for each in model_tables.qualities(models):
             show.table(each)
         show.table(model_tables.campaigns(study.fits))
-    show.findings(study.checks)
+    of_slopes = (c for c in study.checks if c.finding is None or c.finding.code != NOT_IN_LAW)  # a slope is of no law
+    show.findings(tuple(of_slopes) if symbols else study.checks)
 
 
 def _of_symbols(study: Study, symbols: list[str]) -> None:

@@ -67,8 +67,8 @@ def read_printed(items: Sequence[str], place: str) -> dict[str, float]:
     return out
 
 
-def at_no_angle(symbol: str, printed: float, result: FitResult) -> str:
-    """A printed coefficient that no unit of the angle touches, against the fitted 95 % interval.
+def at_no_angle(symbol: str, printed: float, result: FitResult) -> tuple[bool, str]:
+    """Whether a printed coefficient that no unit of the angle touches lies inside the fitted 95 % interval, and that in words.
 
     Parameters
     ----------
@@ -80,14 +80,16 @@ def at_no_angle(symbol: str, printed: float, result: FitResult) -> str:
     """
     model = next((m for m in result.models if symbol in m.symbols), None)
     if model is None:
-        return f"{symbol}: not fitted, so the printed {printed:g} is not compared."
+        return False, f"{symbol}: not fitted, so the printed {printed:g} is not compared."
     value, half = model.named(symbol)
     if not np.isfinite(half):
-        return f"{symbol}: printed {printed:g}, fitted {value:.5g} without an interval."
-    place = "inside" if abs(printed - value) <= half else "outside"
-    return (
+        return False, f"{symbol}: printed {printed:g}, fitted {value:.5g} without an interval."
+    is_inside = abs(printed - value) <= half
+    place = "inside" if is_inside else "outside"
+    words = (
         f"{symbol}: printed {printed:g} is {place} the fitted {value:.5g} +- {half:.2g}; it has no unit of the angle."
     )
+    return is_inside, words
 
 
 summary = "lift, drag and pitching moment of a glider over angle of attack and speed, per degree and per radian"
@@ -358,7 +360,9 @@ def angle_unit_of(printed: Mapping[str, float], result: FitResult) -> AngleUnit:
     statements, inside = [], 0
     for slope in (s for s in PRINTABLE if s in printed):
         if slope not in SLOPES:
-            statements.append(at_no_angle(slope, printed[slope], result))
+            is_inside, words = at_no_angle(slope, printed[slope], result)
+            inside += is_inside
+            statements.append(words)
             continue
         fitted = _per_unit(result, slope)
         if fitted is None:

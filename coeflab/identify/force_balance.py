@@ -29,6 +29,7 @@ from coeflab.motion.vehicle import Vehicle
 # windows is taken as one stretch.
 APART, STRETCH = 0.5, 4.0
 SHARES, MORE, TELLING = 8.0, 1.25, 3e-3
+BIASING = 0.05  # of a motion
 NOISE = 0.5  # share of a motion's power: with less of it told twice alike, noise is most of what is seen
 
 
@@ -150,16 +151,17 @@ def row_noise(s: MotionSeries, apart: int = 1) -> Array:
     return np.asarray(np.sqrt(np.mean(np.square(sum(parts)), axis=0) / 70.0))
 
 
-def correlated(s: MotionSeries, half: float) -> tuple[str, ...]:
+def correlated(s: MotionSeries, half: float, least: float = TELLING) -> tuple[str, ...]:
     """Motions whose noise neighbouring rows share, so that even and odd rows are no instruments for each other.
 
-    An eighth of half a window apart it is clearly more than between neighbours, and more than 0.3 % of the motion.
+    An eighth of half a window apart it is clearly more than between neighbours, and more than a share of the motion: at `BIASING` the
+    square of it, which the values are off by, is 0.25 %.
     """
     apart = round(half / SHARES / float(np.median(np.diff(s.time))))
     if apart < 2 or len(s.time) < 8 * apart:
         return ()
     far, size = row_noise(s, apart), np.sqrt(np.mean(np.square(s.velocity), axis=0))
-    found = (far > MORE * row_noise(s)) & (far > TELLING * size)
+    found = (far > MORE * row_noise(s)) & (far > least * size)
     return tuple(m for m, shared in zip(MOTIONS, found, strict=True) if shared)
 
 

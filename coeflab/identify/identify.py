@@ -16,6 +16,7 @@ from coeflab.fits.sparse import scaled_optimizer
 from coeflab.identify.candidate_terms import candidate_terms
 from coeflab.identify.candidates import ALONG
 from coeflab.identify.force_balance import (
+    BIASING,
     NOISE,
     STRETCH,
     Candidate,
@@ -148,6 +149,7 @@ def _identified(
 ) -> Identified:  # fmt: skip
     share = excited(series, half)
     shared = tuple(dict.fromkeys(m for s in series for m in correlated(s, half)))
+    biased = any(correlated(s, half, BIASING) for s in series)
     fit_added = o.added_mass == "fit" or not np.any(body.added)
     library = candidate_terms(
         parameters, moving, o.terms, symmetric=o.symmetric == "yes", accelerations=fit_added,
@@ -163,11 +165,11 @@ def _identified(
             continue
         balance = (weak if o.form == "weak" else differenced)(series, body, c, mine, half)
         some, balanced = _component(c, mine, balance, share, parameters, body.water, o)
-        terms += [_biased(t) for t in some] if shared else some
+        terms += [_of_shared_noise(t, biased) for t in some] if shared else some
         balances.append(balanced)
     return Identified(
         parameters.name, tuple(s.file for s in series), f"{o.form} form", half, o.seed, o.resamples, tuple(terms),
-        tuple(balances), (*map(remark, found), *_shared(shared, series), *_statements(series, body, moving, share, library, half, o, bool(shared))),
+        tuple(balances), (*map(remark, found), *_shared(shared, series), *_statements(series, body, moving, share, library, half, o, biased)),
         (*(f for f in found if f.code != EDGE), *(f for s in series for f in s.findings)),
     )  # fmt: skip
 
@@ -277,9 +279,9 @@ def _result(
     )  # fmt: skip
 
 
-def _biased(term: IdentifiedTerm) -> IdentifiedTerm:
-    """Without an interval, and not as identified, where neighbouring rows share their noise."""
-    outcome = Outcome.BIASED if term.outcome is Outcome.IDENTIFIED else term.outcome
+def _of_shared_noise(term: IdentifiedTerm, biased: bool) -> IdentifiedTerm:
+    """Without an interval where neighbouring rows share their noise, and not as identified where it is large."""
+    outcome = Outcome.BIASED if biased and term.outcome is Outcome.IDENTIFIED else term.outcome
     return replace(term, outcome=outcome, low=None, high=None)
 
 
@@ -291,11 +293,11 @@ def _statements(
     library: Sequence[Candidate],
     half: float,
     o: Options,
-    shared: bool,
+    biased: bool,
 ) -> tuple[str, ...]:
     """What was assumed, and what the series cannot show."""
-    out = [*body.water.statements] if shared else [HOW, *body.water.statements]
-    if o.form == "weak" and not shared:
+    out = [*body.water.statements] if biased else [HOW, *body.water.statements]
+    if o.form == "weak" and not biased:
         out.append("Even and odd rows serve each other as instruments, which removes the bias of white noise.")
     elif o.form != "weak":
         out.append("Central differences and plain least squares: noise biases the coefficients. Prefer the weak form.")

@@ -17,7 +17,7 @@ from coeflab.api import studies
 from coeflab.core.errors import InputError
 from coeflab.fits import tied_law
 from coeflab.report.document import AnswerRow
-from coeflab.report.figures import estimator, first_page, laws, model, motion, nouns, sweep, three_views
+from coeflab.report.figures import estimator, first_page, law_along, laws, motion, nouns, slices, sweep, three_views
 from coeflab.report.figures.files import drawing, files_of, styled
 from coeflab.report.figures.palette import COLOURS
 from coeflab.report.plots import plot_forest
@@ -150,9 +150,9 @@ def test_points_of_a_table_are_drawn_once(monkeypatch: pytest.MonkeyPatch) -> No
 def test_a_law_along_a_motion_is_drawn_once(monkeypatch: pytest.MonkeyPatch) -> None:
     result = cf.fit("suboff_cfd_barehull", "manoeuvring_model")
     law = next(m for m in result.fits[0].models if "Yv" in [s.removesuffix("'") for s in m.symbols])
-    made = captured(monkeypatch, model)
-    model.along_figure(law, "m")
-    assert_one_drawing(result.plot("Yv'", ax=new_axes()), made[model.along(law).index("v")], "x")
+    made = captured(monkeypatch, law_along)
+    law_along.along_figure(law, "m")
+    assert_one_drawing(result.plot("Yv'", ax=new_axes()), made[law_along.along(law).index("v")], "x")
 
 
 TERMS = ["Yv", "Yr", "Yv|r|", "Nv", "Nr", "Nvvr"]
@@ -184,8 +184,8 @@ def crossed(apart: float = 0.0) -> cf.Table:
 def test_a_cross_term_is_drawn_in_slices_as_the_report_draws_them(monkeypatch: pytest.MonkeyPatch) -> None:
     result = cf.fit(crossed(), "manoeuvring_model", terms=TERMS)
     law = next(m for m in result.fits[0].models if m.response == "Y")
-    made = captured(monkeypatch, model)
-    model.slices_figure(law, "m")
+    made = captured(monkeypatch, slices)
+    slices.slices_figure(law, "m")
     ours = result.plot("Yv|r|'", ax=new_axes())
     assert_one_drawing(ours, made[0], "x")
     levels = [t.get_text() for t in ours.get_legend().get_texts()]

@@ -203,11 +203,11 @@ def test_a_hundred_thousand_rows_are_read(tmp_path: Path) -> None:
     (tmp_path / "t.csv").write_text("beta [deg],X [N],Y [N],N [N*m]\n" + rows)
     cells = read_cells(tmp_path / "t.csv")
     assert cells.numbers("Y").shape == (100_000,)
-    point = [0.1, 0.2, -1.0]
+    box, point = [[1, 0, -1], [-1, 0, 0], [0, 1, -1], [0, -1, 0]], [0.1, 0.2, -1.0]
     table = {
         "response": "Y'", "unit": "1", "form": "line", "variables": [{"name": "v", "unit": "1"}, {"name": "r", "unit": "1"}],
         "terms": [{"symbol": "Yv", "factors": [{"variable": "v", "power": 1}], "value": 1.0, "half_width_95": 0.1}],
-        "covariance": [[0.0025]], "domain": {"low": [0, 0], "high": [1, 1], "half_spaces": [point] * 100_000,
+        "covariance": [[0.0025]], "domain": {"low": [0, 0], "high": [1, 1], "half_spaces": box + [point] * (100_000 - len(box)),
         "extrapolation": "refuse"}, "n_points": 9, "rms": 0.1, "press_rms": None, "table": "t", "campaign": "c",
     }  # fmt: skip
     (tmp_path / "p.json").write_text(json.dumps({**SAMPLE, "models": [table]}))

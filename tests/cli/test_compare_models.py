@@ -129,7 +129,11 @@ def longer_without_area(content: dict[str, Any]) -> None:
 
 
 def elsewhere(content: dict[str, Any]) -> None:
-    content["models"][0]["domain"].update(low=[1.0, 0.0], high=[2.0, 1.0], half_spaces=[[-1.0, 0.0, 1.0]])
+    content["models"][0]["domain"].update(
+        low=[1.0, 0.0],
+        high=[2.0, 1.0],
+        half_spaces=[[-1.0, 0.0, 1.0], [1.0, 0.0, -2.0], [0.0, -1.0, 0.0], [0.0, 1.0, -1.0]],
+    )
 
 
 def without_value(content: dict[str, Any]) -> None:
@@ -192,7 +196,7 @@ def test_terms_chosen_on_the_data_and_shared_data_are_mentioned() -> None:
 
 def test_data_on_an_oblique_line_that_meets_no_grid_are_compared_along_it() -> None:
     def change(content: dict[str, Any]) -> None:
-        limits = {"low": [0.0, 0.0], "high": [0.4, 0.4]}
+        limits = {"low": [-0.001, -0.001], "high": [0.401, 0.401]}
         line = [[0.6, -0.8, -0.001], [-0.6, 0.8, 0.001], [0.8, 0.6, -0.5], [-0.8, -0.6, 0.0]]
         content["models"][0]["domain"].update(**limits, half_spaces=line)
 

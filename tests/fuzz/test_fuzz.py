@@ -31,7 +31,7 @@ THROUGH = {
     "parts.read_parts": "openfoam", "reading.read_groups": "campaign", "reading.read_raw": "table", "reading.read_table": "campaign",
     "records.read_record": "job", "runs.read_all": "openfoam", "runs.read_run": "openfoam", "series.read_comments": "openfoam",
     "settings.read_setting": "setting", "settings.read_settings": "setting", "symbols.read_factors": "symbol", "terms.parse_suffix": "symbol",
-    "terms.read_terms": "equation", "vehicle.read_vehicle": "models", "xml.read_xml": "models", "yaml.read_yaml": "models",
+    "named_terms.read_terms": "equation", "vehicle.read_vehicle": "models", "xml.read_xml": "models", "yaml.read_yaml": "models",
 }  # fmt: skip
 
 
