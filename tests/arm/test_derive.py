@@ -110,10 +110,9 @@ def test_a_terminal_shows_progress_and_a_killed_run_leaves_nothing(tmp_path: Pat
     process = subprocess.Popen(command, cwd=tmp_path, stdout=subprocess.DEVNULL, stderr=far)
     os.close(far)
     heard = b""
-    while b"equations" not in heard:
+    while not any(step in heard for step in (b"mass matrix", b"bias", b"equations")):  # a quick step is never shown
         heard += os.read(near, 4096)
     process.send_signal(signal.SIGKILL)
     process.wait()
     os.close(near)
-    assert b"mass matrix" in heard
     assert list(tmp_path.iterdir()) == []
