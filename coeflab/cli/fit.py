@@ -14,8 +14,10 @@ from coeflab.cli import options, show
 from coeflab.core.errors import InputError, shown
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from coeflab.api.campaigns import Study, Sweep
-    from coeflab.core.table import Table
+    from coeflab.core.table import Check, Table
     from coeflab.report.document import Figure
 
 
@@ -78,6 +80,8 @@ def command(
         )
     wanted = [s.removesuffix("'") for s in symbol]
     _refuse_strange(study, wanted)
+    if wanted:  # a slope alone is of no law: what a law leaves out is neither shown nor counted
+        study = study.with_checks(_of_slopes(study.checks))
     if figure is not None:
         _draw(study, wanted, figure)
     if json:
@@ -193,6 +197,12 @@ def _diagnose(study: Study) -> None:
         show.table(model_tables.correlations(model))
 
 
+def _of_slopes(checks: Sequence[Check]) -> tuple[Check, ...]:
+    from coeflab.vehicle.not_in_law import NOT_IN_LAW
+
+    return tuple(c for c in checks if c.finding is None or c.finding.code != NOT_IN_LAW)
+
+
 def _print(study: Study, symbols: list[str]) -> None:
     from coeflab.report.tables import budgets as budget_tables
     from coeflab.report.tables import force_tables
@@ -200,7 +210,6 @@ def _print(study: Study, symbols: list[str]) -> None:
     from coeflab.report.tables import nouns as noun_tables
     from coeflab.report.tables import oscillations as oscillation_tables
     from coeflab.report.tables import results as tables
-    from coeflab.vehicle.not_in_law import NOT_IN_LAW
 
     found = tables.headline(study, symbols) or " ".join(oscillation_tables.headline(f) for f in study.fits)
     found = found or " ".join(tables.resistances(study))
@@ -223,8 +232,7 @@ def _print(study: Study, symbols: list[str]) -> None:
         for each in model_tables.qualities(models):
             show.table(each)
         show.table(model_tables.campaigns(study.fits))
-    of_slopes = (c for c in study.checks if c.finding is None or c.finding.code != NOT_IN_LAW)  # a slope is of no law
-    show.findings(tuple(of_slopes) if symbols else study.checks)
+    show.findings(study.checks)
 
 
 def _of_symbols(study: Study, symbols: list[str]) -> None:

@@ -84,7 +84,7 @@ def inside(spaces: Array, points: Array, slack: float = SLACK) -> Array:
 
 TAPER = 0.1
 THICKNESS = 1e-12
-FAR, WITHIN = 1e3, 1e-2  # box widths: of points that ask where a hull ends, and by which it may leave its box
+FAR, WITHIN = 1e3, 1e-6  # box widths: of points that ask where a hull ends, and by which it may leave its box
 
 
 def clamped(points: Array, spaces: Array, low: Array, high: Array) -> Array:

@@ -209,7 +209,7 @@ _HALF = re.compile(
     rf"(?i)(?<![^\W_])(?:(?:half|semi|halb(?:e[snrm]?)?|h(?:ä|ae)lfte|demi\w?|moiti[ée]|mitad|met(?:à|a)|medio|mezz[oa]|½|1/2)"
     rf"[\s_-]{{0,3}}(?:(?:an?|of|the|de[rslnm]?|de|du|del|la|le|l'|el|dello|della)[\s]{{0,3}}){{0,3}}(?:{_BODIES})"
     rf"|(?:{_SIDES}|modell|rumpf|k(?:ö|oe)rper|schiffs?)[\s-]{{0,3}}(?:half|h(?:ä|ae)lfte|moiti[ée])|symmetric\s+half|(?:semi|half)[\s-]?span\s+model"
-    rf"|(?:one|{_SIDES})\s+side\s+only|(?:one|either)\s+side\s+(?:of\s+the\s+(?:{_BODIES}))|only\s+(?:the\s+)?(?:one|{_SIDES})\s+side|nur\s+(?:eine|die)\s+\w{{0,12}}\s?(?:seite|h(?:ä|ae)lfte)"
+    rf"|(?:one|{_SIDES})\s+side\s+only|(?:one|either)\s+side\s+of\s+the\s+(?:{_BODIES})|only\s+(?:the\s+)?(?:one|{_SIDES})\s+side|nur\s+(?:eine|die)\s+\w{{0,12}}\s?(?:seite|h(?:ä|ae)lfte)"
     rf"|symmetr(?:y|ic)[\s-]{{1,3}}(?:plane|boundary|condition|bc)s?|symmetrie(?:ebene|rand\w*)|plan\s+de\s+sym[ée]trie|reflection\s+(?:plate|plane)"
     rf"|not\s+(?:yet\s+)?(?:doubled|multiplied\s+by\s+(?:2|two))|to\s+be\s+doubled|nicht\s+verdoppelt|non\s+doubl[ée]e?s?)(?![^\W_])"
 )
