@@ -14,10 +14,8 @@ from coeflab.cli import options, show
 from coeflab.core.errors import InputError, shown
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
     from coeflab.api.campaigns import Study, Sweep
-    from coeflab.core.table import Check, Table
+    from coeflab.core.table import Table
     from coeflab.report.document import Figure
 
 
@@ -61,7 +59,7 @@ def command(
 
         explain("fits", fit or DEFAULT)
         return
-    from coeflab.api.campaigns import fit_campaigns, suited_fit, typed_scaling
+    from coeflab.api.campaigns import fit_campaigns, of_slopes, suited_fit, typed_scaling
 
     if next_runs is not None:  # goes in 0.4
         raise InputError(f"fit --next {shown(next_runs)}", "coeflab next TABLE", column="--next")
@@ -80,8 +78,8 @@ def command(
         )
     wanted = [s.removesuffix("'") for s in symbol]
     _refuse_strange(study, wanted)
-    if wanted:  # a slope alone is of no law: what a law leaves out is neither shown nor counted
-        study = study.with_checks(_of_slopes(study.checks))
+    if wanted:
+        study = of_slopes(study)
     if figure is not None:
         _draw(study, wanted, figure)
     if json:
@@ -195,12 +193,6 @@ def _diagnose(study: Study) -> None:
     for model in models:
         show.table(model_tables.influence(model))
         show.table(model_tables.correlations(model))
-
-
-def _of_slopes(checks: Sequence[Check]) -> tuple[Check, ...]:
-    from coeflab.vehicle.not_in_law import NOT_IN_LAW
-
-    return tuple(c for c in checks if c.finding is None or c.finding.code != NOT_IN_LAW)
 
 
 def _print(study: Study, symbols: list[str]) -> None:
