@@ -18,7 +18,7 @@ from coeflab.study.run import run
 from coeflab.study.study import Plan, PlannedJoint, Study
 from coeflab.tables.reading import suited_fit, table_at
 
-__all__ = ["FirstFit", "Study", "Sweep", "first_fit", "fit_campaigns", "suited_fit"]
+__all__ = ["FirstFit", "Study", "Sweep", "first_fit", "fit_campaigns", "of_slopes", "suited_fit"]
 MAIN = ("Yv", "Nv", "Zw", "Mw", "Yr", "Nr")
 Progress = Callable[[str], None]
 
@@ -97,6 +97,13 @@ def fit_campaigns(
         include_uncertain=include_uncertain,
     ), progress)  # fmt: skip
     return replace(study, checks=tuple(c for c in study.checks if c.name != "law at points"))  # none is offered
+
+
+def of_slopes(study: Study) -> Study:
+    """The study without findings of a law, of which a slope alone is no part."""
+    from coeflab.vehicle.not_in_law import NOT_IN_LAW
+
+    return study.with_checks(tuple(c for c in study.checks if c.finding is None or c.finding.code != NOT_IN_LAW))
 
 
 class FirstFit(NamedTuple):
