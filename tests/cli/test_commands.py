@@ -93,7 +93,9 @@ def test_fit_shows_the_slope_first_and_other_forms_after_it(coeflab: Run) -> Non
     assert f"(U95; covers {COVERS})" in " ".join(done.stdout.split())
     assert len(done.stdout.splitlines()) < 25
     assert "Nv'" not in done.stdout
-    assert coeflab("fit", "suboff_roddy_2", "--symbol", "Yv'", "--strict").returncode == 0  # no warning that is not shown
+    assert (
+        coeflab("fit", "suboff_roddy_2", "--symbol", "Yv'", "--strict").returncode == 0
+    )  # no warning that is not shown
     for text in ("Other forms for Yv'", "Yv' by largest setting", "doubtful"):
         assert text in flat(done.stdout)
 
