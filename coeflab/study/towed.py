@@ -21,7 +21,7 @@ from coeflab.law.coefficient import Status
 from coeflab.law.symbols import ANGULAR, LINEAR, derivative, primed
 from coeflab.study.lines import line
 from coeflab.study.secants import secant
-from coeflab.study.validation import against_printed, reynolds_of, validation, without_grid
+from coeflab.study.validation import against_printed, reynolds_of, validation
 from coeflab.tables.campaign import FOURFOLD
 from coeflab.tables.force_table import AT_REST
 from coeflab.vehicle.published_values import Relation
@@ -187,7 +187,7 @@ def _row(
     own = _coefficient(fits, source or symbol)
     budget = _budget(study, tow.campaign, source or symbol)
     u_grid = None if budget is None else budget.part("grid")
-    no_grid = "" if budget is None else without_grid(budget.unassessed)
+    no_grid = "" if budget is None or budget.open_grid is None else budget.open_grid.reason
     if own is None or own.value is None:
         missing, why = _missing(study, tow, source or symbol, own)
         one = secant(_tables(study, tow.campaign), source or symbol, scaling) if missing == OPEN and scaling else None

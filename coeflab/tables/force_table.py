@@ -168,6 +168,10 @@ class ForceTable:
         ``rps`` in rad/s, ``J``, ``thrust`` in N, where the table has them.
     model_mass : float or None
         Of the model, kg, where its campaign states an inertia to be subtracted.
+    inertia_subtracted : bool
+        Whether that of a turning model was.
+    halved : str
+        What of half of a body was doubled, in words; empty for a whole body.
     """
 
     name: str
@@ -204,6 +208,8 @@ class ForceTable:
     findings: tuple[Finding, ...] = ()
     propeller: Mapping[str, Array] = field(default_factory=dict)
     model_mass: float | None = None
+    inertia_subtracted: bool = False
+    halved: str = ""
 
     def __post_init__(self) -> None:
         for name in ("motion", "controls", "forces", "errors", "propeller"):

@@ -50,6 +50,25 @@ def sentences_on_open(names: Iterable[str], *, what: str = "Not in U95") -> list
     return [f"{what}: {'; '.join(words)}."] if words else []
 
 
+def grid_of_some(name: str, among: Sequence[Budget] | Sequence[Validation], some: bool) -> str:
+    """A part that was not assessed; the grid with its symbols where it is in the uncertainty of the others.
+
+    Parameters
+    ----------
+    name : str
+        As in `Budget.unassessed`.
+    among : sequence of Budget or Validation
+    some : bool
+        Whether it is.
+    """
+    having = [one for one in among if one.open_grid is not None and one.open_grid.name == name]
+    if not having or not some:
+        return name
+    grid = having[0].open_grid
+    state = f" ({grid.reason})" if grid is not None and grid.study is not None else ""
+    return f"grid, for {listed([primed(one.symbol) for one in having])}{state}"
+
+
 def overview(budgets: Sequence[Budget]) -> Table:
     """One row a coefficient: U95 and the share of every part; a dash is a part that was not assessed."""
     names = list(dict.fromkeys(p.name for b in budgets for p in b.parts))

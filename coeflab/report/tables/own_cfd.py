@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from coeflab.core.table import ABSENT, Table, as_printed, percent, with_u95
 from coeflab.core.wording import collected, listed
 from coeflab.law.symbols import primed
-from coeflab.report.tables.budgets import SET_IN_A_COMPUTATION, sentences_on_open
+from coeflab.report.tables.budgets import SET_IN_A_COMPUTATION, grid_of_some, sentences_on_open
 from coeflab.report.tables.results import NO_VALUE
 from coeflab.report.texts import table_of
 from coeflab.study.lines import NAME
@@ -17,7 +17,6 @@ from coeflab.study.validation import AS_PRINTED, in_millions
 
 if TYPE_CHECKING:
     from coeflab.study.towed import Towed
-    from coeflab.study.validation import Validation
 
 NO_RESULT = "no result"
 AGAINST = {True: "within U_V", False: "beyond U_V", None: "no verdict"}
@@ -88,22 +87,18 @@ def tow_against(found: Towed) -> Table:
     known = dict.fromkeys((v.experiment, v.reynolds) for v in judged)
     notes += [f"Re: {in_millions(s)} in the CFD, {in_millions(d)} in {test}." for test, (s, d) in known if s and d]
     notes += sentences_on_open(
-        (_of_some(u, judged) for v in judged for u in v.lacking if u not in SET_IN_A_COMPUTATION),
+        (
+            grid_of_some(u, judged, not all(u in each.lacking for each in judged))
+            for v in judged
+            for u in v.lacking
+            if u not in SET_IN_A_COMPUTATION
+        ),
         what="From the CFD, U_V leaves out",
     )
     fitted = [primed(v.symbol) for v in judged if v.lacking_measured]
     of = f"U_V of {listed(fitted)}" if 0 < len(fitted) < len(judged) else "U_V"
     notes += sentences_on_open((u for v in judged for u in v.lacking_measured), what=f"From the test, {of} leaves out")
     return table_of("own_cfd.tow_against", rows, notes, name=found.tow.name)
-
-
-def _of_some(name: str, judged: Sequence[Validation]) -> str:
-    """A part that U_V leaves out; the grid with its symbols where U_V of the others has it."""
-    having = [v for v in judged if name in v.lacking]
-    if not name.startswith("grid") or len(having) == len(judged):
-        return name
-    state = name.removeprefix("grid").replace("(study", "(grid study")
-    return f"grid, for {listed([primed(v.symbol) for v in having])}{state}"
 
 
 def _stated(found: Towed, test: str) -> str:
