@@ -210,16 +210,11 @@ def validation(found: Sequence[Validation]) -> Table:
     return table_of("uncertainty.validation", rows, (f"{primed(v.symbol)}: {v.statement}." for v in found))
 
 
-def _in_digits(value: float, half: float | None) -> str:
-    """In the digits that go with a half-width; of a value that they do not show, two of its own."""
-    return number(value, 2) if half and abs(value) < 0.01 * half else with_u95(value, half)[0]
-
-
 def predictions(found: Sequence[Validation]) -> Table:
     """Comparison error of every computed coefficient, those with a verdict first, in digits that go with U_V."""
     rows = tuple(
         (
-            primed(v.symbol), v.simulation, v.experiment.removesuffix(AS_PRINTED), _in_digits(v.computed, v.u_validation), with_u95(v.measured, v.u_validation)[0],
+            primed(v.symbol), v.simulation, v.experiment.removesuffix(AS_PRINTED), number(v.computed, 2) if v.u_validation and abs(v.computed) < 0.01 * v.u_validation else with_u95(v.computed, v.u_validation)[0], with_u95(v.measured, v.u_validation)[0],
             *with_u95(v.error, v.u_validation), _verdict(v),
         )
         for v in sorted(found, key=lambda v: v.within is None)
