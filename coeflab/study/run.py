@@ -25,12 +25,12 @@ from coeflab.law.symbols import derivative
 from coeflab.study.checking import checked
 from coeflab.study.checks.sizes import UNITS_APART, masses_of_models
 from coeflab.study.fitting import FEWEST, fitted, refuse_empty, rejoined
-from coeflab.study.study import Conversion, Plan, Study
+from coeflab.study.study import Conversion, Plan, PlannedConversion, PlannedJoint, Study
 from coeflab.study.symmetry import confirmed, of_bodies
 from coeflab.tables.reading import read_tables, table_at
 from coeflab.vehicle.assemble import assemble
 from coeflab.vehicle.gathered import PlannedParameterFile
-from coeflab.vehicle.parameter_file import located_refusals, read_parameter_file
+from coeflab.vehicle.parameter_file import ParameterFile, located_refusals, read_parameter_file
 from coeflab.vehicle.published_values import compare, compare_set, read_references
 
 if TYPE_CHECKING:
@@ -41,9 +41,7 @@ if TYPE_CHECKING:
     from coeflab.formats.export import Export, Refused
     from coeflab.law.scaling import Scaling
     from coeflab.motion.manoeuvre import Simulation
-    from coeflab.study.study import PlannedConversion, PlannedJoint
     from coeflab.tables.force_table import ForceTable
-    from coeflab.vehicle.parameter_file import ParameterFile
 
 
 def settled(table: ForceTable, plan: Plan) -> ForceTable:

@@ -17,24 +17,20 @@ from numpy.typing import NDArray
 
 from coeflab.core.types import brief
 from coeflab.core.wording import listed
-from coeflab.law.coefficient import Status
+from coeflab.law.coefficient import Coefficient, Status
 from coeflab.law.symbols import ANGULAR, LINEAR, derivative, primed
 from coeflab.study.lines import line
 from coeflab.study.secants import secant
-from coeflab.study.validation import against_printed, reynolds_of, validation
+from coeflab.study.validation import Validation, against_printed, reynolds_of, validation
 from coeflab.tables.campaign import FOURFOLD
-from coeflab.tables.force_table import AT_REST
-from coeflab.vehicle.published_values import Relation
+from coeflab.tables.force_table import AT_REST, ForceTable
+from coeflab.vehicle.published_values import Reference, Relation
 
 if TYPE_CHECKING:
     from coeflab.fits.results.fit_result import FitResult
     from coeflab.fits.uncertainty.budget import Budget
-    from coeflab.law.coefficient import Coefficient
     from coeflab.law.scaling import Scaling
     from coeflab.study.study import PlannedTow, Study
-    from coeflab.study.validation import Validation
-    from coeflab.tables.force_table import ForceTable
-    from coeflab.vehicle.published_values import Reference
 
 # A quarter of a turn about x: v -> w, Y -> Z, N -> -M, r -> -q.
 TURNED = {"Zw": ("Yv", 1.0), "Mw": ("Nv", -1.0), "Zq": ("Yr", -1.0), "Mq": ("Nr", 1.0)}

@@ -20,14 +20,13 @@ from coeflab.fits.uncertainty.grid_convergence import Convergence
 from coeflab.law.friction_line import FRICTION_APART, friction_line
 from coeflab.law.symbols import derivative
 from coeflab.study.symmetry import zeros
-from coeflab.tables.force_table import STUDIES
+from coeflab.tables.force_table import STUDIES, ForceTable
 from coeflab.vehicle.stability import INDICES, index_gradient, stability_index
 
 if TYPE_CHECKING:
     from coeflab.fits.uncertainty.budget import Budget, OpenGrid
     from coeflab.law.coefficient import CoefficientSet
     from coeflab.study.study import Study
-    from coeflab.tables.force_table import ForceTable
     from coeflab.vehicle.published_values import Reference
 
 

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
 from coeflab.core.finding import Severity
@@ -16,6 +14,7 @@ from coeflab.vehicle.expected_signs import sign_findings
 from coeflab.vehicle.force_law import force_law, force_of_tables, points_of, spoken
 from coeflab.vehicle.inertia import centre_of_gravity
 from coeflab.vehicle.law_at_points import missed_for_certain
+from coeflab.vehicle.parameter_file import ParameterFile
 from coeflab.vehicle.plausible_added_mass import (
     CHANGED,
     LAW,
@@ -28,10 +27,6 @@ from coeflab.vehicle.plausible_added_mass import (
 from coeflab.vehicle.plausible_damping import damping_findings
 from coeflab.vehicle.sizes import size_findings
 from coeflab.vehicle.sources import acts_in
-
-if TYPE_CHECKING:
-    from coeflab.vehicle.parameter_file import ParameterFile
-
 
 SMALL = 1e-4  # of the speed: a slope at zero, by central difference
 ALONG = 0.9  # of a thruster's direction: within 26 deg of x

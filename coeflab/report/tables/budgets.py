@@ -3,24 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from coeflab.core.table import ABSENT, Table, coefficient, number, percent, with_u95
 from coeflab.core.wording import listed
-from coeflab.fits.uncertainty.budget import COUPLED
+from coeflab.fits.results.fitted_model import FittedModel
+from coeflab.fits.uncertainty.budget import COUPLED, Budget
 from coeflab.law.friction_line import FRICTION_APART
 from coeflab.law.symbols import primed
 from coeflab.report.texts import table_of, text_of
-from coeflab.study.validation import AS_PRINTED, WIDE
-
-if TYPE_CHECKING:
-    from coeflab.fits.results.fitted_model import FittedModel
-    from coeflab.fits.uncertainty.budget import Budget
-    from coeflab.study.validation import Validation
-    from coeflab.vehicle.stability import Derived
-
+from coeflab.study.validation import AS_PRINTED, WIDE, Validation
+from coeflab.vehicle.stability import Derived
 
 UNITS = {"angle": "rad", "reference point": "m"}
 READ_IN_A_TEST = ("angle", "rate", "speed", "force", "moment", "length", "density", "reference point", COUPLED)

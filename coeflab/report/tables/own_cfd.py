@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
 
 from coeflab.core.table import ABSENT, Table, as_printed, percent, with_u95
 from coeflab.core.wording import collected, listed
@@ -13,10 +12,8 @@ from coeflab.report.tables.results import NO_VALUE
 from coeflab.report.texts import table_of
 from coeflab.study.lines import NAME
 from coeflab.study.towed import NO_RESULT as SHARE
+from coeflab.study.towed import Towed
 from coeflab.study.validation import AS_PRINTED, in_millions
-
-if TYPE_CHECKING:
-    from coeflab.study.towed import Towed
 
 NO_RESULT = "no result"
 AGAINST = {True: "within U_V", False: "beyond U_V", None: "no verdict"}

@@ -9,13 +9,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from coeflab.core.axes import point_in_words
-from coeflab.core.finding import Severity
+from coeflab.core.finding import Finding, Severity
 from coeflab.core.provenance import work
-from coeflab.core.table import ABSENT, Table, coefficient, number
+from coeflab.core.table import ABSENT, Check, Table, coefficient, number
 from coeflab.core.texts import words
 from coeflab.core.wording import collected, listed
 from coeflab.fits.rows.sweeps import arm_shift
-from coeflab.law.coefficient import COVERS, Status
+from coeflab.law.coefficient import COVERS, Coefficient, Status
 from coeflab.law.symbols import primed
 from coeflab.report.tables import nouns as noun_tables
 from coeflab.report.tables.sources import halves
@@ -24,10 +24,7 @@ from coeflab.study.checks import CHECKS
 from coeflab.tables.assumptions import CODE, FLAG, depends
 
 if TYPE_CHECKING:
-    from coeflab.core.finding import Finding
-    from coeflab.core.table import Check
     from coeflab.fits.results.straight_runs import StraightRuns
-    from coeflab.law.coefficient import Coefficient
     from coeflab.study.study import Study
 
 NO_DATA, NO_VALUE = "no data", "no value"
