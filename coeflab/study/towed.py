@@ -73,6 +73,8 @@ class TowedRow:
         How far other turbulence models move the value, 95 % half-width, beside U95; None where none was tried.
     no_grid : str
         Why U95 leaves the grid out: ``no grid study``, ``grid study divergent``; empty where it holds it.
+    is_turned : bool
+        Whether fourfold symmetry sets it equal to another one.
     """
 
     symbol: str
@@ -88,6 +90,7 @@ class TowedRow:
     reasons: tuple[str, ...] = ()
     line: float | None = None
     model: float | None = None
+    is_turned: bool = False
 
     @property
     def is_result(self) -> bool:
@@ -195,16 +198,8 @@ def _row(
     if source:
         turned = replace(own, symbol=symbol, value=sign * own.value)
         equal = f"{'-' if sign < 0.0 else ''}{primed(source)}"
-        return TowedRow(
-            symbol,
-            turned,
-            u_grid,
-            "",
-            f"set equal to {equal} by fourfold symmetry",
-            published,
-            why_none=f"as {primed(source)}",
-            no_grid=no_grid,
-        )
+        why, none = f"set equal to {equal} by fourfold symmetry", f"as {primed(source)}"
+        return TowedRow(symbol, turned, u_grid, "", why, published, why_none=none, no_grid=no_grid, is_turned=True)
     why = _left_out(study, tow.campaign, symbol)
     result = None if budget is None else _against(study, budget, own, fits, tests)
     if result is None:

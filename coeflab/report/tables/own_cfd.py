@@ -68,7 +68,7 @@ def tow_against(found: Towed) -> Table:
                 *with_u95(v.error, v.u_validation), verdict,
             )
         )  # fmt: skip
-    none = collected((r.why_none, primed(r.symbol)) for r in found.rows)
+    none = collected((r.why_none, primed(r.symbol)) for r in found.rows if r.why_none and not r.is_turned)
     tests = collected((r.validation.experiment, r) for r in found.rows if r.validation is not None)
     printed = {
         test: [as_printed(p) for r in rows for p in [p for p in r.published if p is not None][:1]]
@@ -79,7 +79,7 @@ def tow_against(found: Towed) -> Table:
         f"D of {', '.join(primed(r.symbol) for r in those)}: {_test(test, printed.get(test, []))}{_stated(found, test)}."
         for test, those in tests.items()
     ]
-    notes += [f"No verdict on {', '.join(s)}: {why}." for why, s in none.items() if why and not why.startswith("as ")]
+    notes += [f"No verdict on {', '.join(s)}: {why}." for why, s in none.items()]
     judged = [r.validation for r in found.rows if r.validation is not None]
     known = dict.fromkeys((v.experiment, v.reynolds) for v in judged)
     notes += [f"Re: {in_millions(s)} in the CFD, {in_millions(d)} in {test}." for test, (s, d) in known if s and d]
