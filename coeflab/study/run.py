@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from coeflab.bodies.readers import read_body
 from coeflab.core.errors import InputError, ScalingMismatchError, shown
 from coeflab.core.files import shipped, stem
 from coeflab.core.finding import Finding
@@ -249,7 +250,6 @@ def _hulls(
     if all(g.hull is None for g in groups):
         return {}
     from coeflab.bodies.added_masses import added_masses
-    from coeflab.bodies.readers import read_body
 
     known: dict[tuple[Path, str], Triangulation] = {}
     out = {}
@@ -317,15 +317,12 @@ def _body(plan: Plan) -> Body | None:
     """What the plan names; a shipped name is a folder."""
     if plan.body is None:
         return None
-    from coeflab.bodies.readers import read_body
 
     return read_body(plan.body / "body.toml" if plan.body.is_dir() else plan.body)
 
 
 def _bodies(plan: Plan, wanted: Set[str]) -> tuple[Body, ...]:
     """The plan's own and the hulls of its parameter files; of the shipped ones, which are called as their folders, the wanted."""
-    from coeflab.bodies.readers import read_body
-
     geometry = shipped("geometry")
     named = dict.fromkeys(h for h in (plan.hull, *(g.hull for g in plan.parameter_files)) if h is not None)
     hulls = (h for h in named if h.parent != geometry or h.name in wanted)
