@@ -75,6 +75,8 @@ class TowedRow:
         Why U95 leaves the grid out: ``no grid study``, ``grid study divergent``; empty where it holds it.
     is_turned : bool
         Whether fourfold symmetry sets it equal to another one.
+    varies : str
+        Motion that no run varies, or too few, where there is no value; empty for straight runs.
     """
 
     symbol: str
@@ -91,6 +93,7 @@ class TowedRow:
     line: float | None = None
     model: float | None = None
     is_turned: bool = False
+    varies: str = ""
 
     @property
     def is_result(self) -> bool:
@@ -191,7 +194,7 @@ def _row(
         missing, why = _missing(study, tow, source or symbol, own)
         one = secant(_tables(study, tow.campaign), source or symbol, scaling) if missing == OPEN and scaling else None
         if one is None or one.value is None:
-            return TowedRow(symbol, None, u_grid, missing, why, published)
+            return TowedRow(symbol, None, u_grid, missing, why, published, varies=_variable(source or symbol))
         if source:
             one = replace(one, symbol=symbol, value=sign * one.value)
         return TowedRow(symbol, one, u_grid, "", f"{SECANT}; {why}", published, why_none=SECANT, no_grid=no_grid)

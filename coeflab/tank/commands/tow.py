@@ -25,7 +25,8 @@ from coeflab.tank.jobs import JobState
 from coeflab.tank.states import JobRow, states_of, time_left
 
 if TYPE_CHECKING:
-    from coeflab.tank.tow import Collected, Tow
+    from coeflab.tank.collected import Collected
+    from coeflab.tank.tow import Tow
 
 
 EXAMPLE = "coeflab tow suboff_bare_hull --dry-run"
@@ -250,6 +251,7 @@ def _fates(tow: Tow, before: Mapping[str, Any] | None) -> None:
 def _carry_out(tow: Tow, before: Mapping[str, Any] | None, folder: Path, cores: int, json: bool) -> None:
     """Run what is not finished with a live table; then the answer. Ctrl-C leaves everything to go on from."""
     import coeflab.tank.tow as tank_room
+    from coeflab.tank.collected import collected, filled
 
     if before is not None and not json and has_begun(tow.folder):
         _fates(tow, before)
@@ -257,18 +259,18 @@ def _carry_out(tow: Tow, before: Mapping[str, Any] | None, folder: Path, cores: 
         with _live(tow, json) as look:
             tank_room.carried_out(tow, cores, look)
     except KeyboardInterrupt:
-        tank_room.collected(tow, fitted=False)
+        collected(tow, fitted=False)
         _stopped(tow, folder)
         raise typer.Exit(INTERRUPTED) from None
     show.step("fitting and drawing the report", json)
-    result = tank_room.collected(tow)
-    if tow.solver.table is not None and not json and not tank_room.filled(tow):
+    result = collected(tow)
+    if tow.solver.table is not None and not json and not filled(tow):
         show.sentence(f"{tow.tank.name}: {len(tow.tank.matrix)} conditions to be computed or measured outside coeflab.")
         show.text(f"Run list: {folder / tow.tank.solver / 'run_list.csv'}")
         show.text("Next:")
         show.sentence(f"  {_next(tow, result, folder)}")
         return
-    _answer(tow, result, folder, json, begun=tow.solver.table is not None and not tank_room.filled(tow))
+    _answer(tow, result, folder, json, begun=tow.solver.table is not None and not filled(tow))
 
 
 def _stopped(tow: Tow, folder: Path) -> None:
@@ -285,8 +287,8 @@ def _live(tow: Tow, json: bool) -> Iterator[Any]:
 
     The campaign is written again whenever a run has ended, so that a kill leaves what was finished as a table.
     """
-    import coeflab.tank.tow as tank_room
     from coeflab.tank import tables
+    from coeflab.tank.collected import collected
 
     shown = tables.shown_of(read_plan(tow.folder))
     words: dict[str, str] = {row.job.name: str(row.progress.state) for row in states_of(tow.folder)} if tow.jobs else {}
@@ -302,7 +304,7 @@ def _live(tow: Tow, json: bool) -> Iterator[Any]:
         over = [r for r in fresh if r.progress.state.is_final or r.progress.why]
         if any(not r.job.name.startswith("mesh/") for r in over):
             try:
-                tank_room.collected(tow, fitted=False)
+                collected(tow, fitted=False)
             except CoeflabError as why:  # it is tried again with the next run, and at the end
                 trouble[:] = [str(why)]
         if not on_terminal and not json:
@@ -378,10 +380,11 @@ def _status(folder: Path, json: bool) -> None:
 
     plan = read_plan(folder)
     if not plan["jobs"]:
-        import coeflab.tank.tow as tank_room
+        from coeflab.tank.collected import filled
+        from coeflab.tank.tow import opened
 
-        tow = tank_room.opened(folder)
-        done, many = tank_room.filled(tow), len(tow.tank.matrix)
+        tow = opened(folder)
+        done, many = filled(tow), len(tow.tank.matrix)
         if json:
             show.json_object({"name": plan["name"], "solver": plan["solver"], "filled": done, "conditions": many})
             return
@@ -413,13 +416,14 @@ def _row(row: JobRow) -> dict[str, Any]:
 
 
 def _collected_only(folder: Path, json: bool) -> None:
-    import coeflab.tank.tow as tank_room
+    from coeflab.tank.collected import collected
+    from coeflab.tank.tow import opened
 
     with show.progress(json) as say:
         say("reading the tow")
-        tow = tank_room.opened(folder)
+        tow = opened(folder)
     show.step("fitting and drawing the report", json)
-    _answer(tow, tank_room.collected(tow), folder, json)
+    _answer(tow, collected(tow), folder, json)
 
 
 def _answer(tow: Tow, result: Collected, folder: Path, json: bool, begun: bool = False) -> None:
