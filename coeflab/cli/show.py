@@ -15,16 +15,14 @@ from typing import TYPE_CHECKING, Any
 import typer
 
 from coeflab.api.names import FRESH_DENSITY
-from coeflab.core.finding import Severity
-from coeflab.core.table import folded, set_lines
+from coeflab.core.finding import Finding, Severity
+from coeflab.core.table import Check, Line, Table, folded, set_lines
 from coeflab.report.printable import visible
 
 if TYPE_CHECKING:
     from pathlib import Path
 
     from coeflab.api.parameters import ParameterFile
-    from coeflab.core.finding import Finding
-    from coeflab.core.table import Check, Line, Table
 
 
 SLOW = 2.0

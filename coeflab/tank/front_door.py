@@ -16,14 +16,12 @@ from coeflab.core.missed import suggesting
 from coeflab.core.texts import input_error
 from coeflab.core.types import in_angles
 from coeflab.tank import tow as tank_room
-from coeflab.tank.collected import collected
+from coeflab.tank.collected import Collected, collected
 from coeflab.tank.tank import Tank
 from coeflab.tank.towed_body import TowedBody
 
 if TYPE_CHECKING:
     import pandas as pd
-
-    from coeflab.tank.collected import Collected
 
 
 @suggesting
