@@ -156,6 +156,10 @@ class ForceTable:
         What the body is declared to be exactly: port-starboard, up-down, fourfold.
     by_symmetry : str
         Name of the table whose rows these are, turned by that symmetry; empty for rows that were run.
+    inertia_subtracted : bool
+        Whether the inertia of a turning model was taken out of its forces.
+    halved : str
+        What of half of a body was doubled, in words; empty for a whole body.
     primed : frozenset of str
         Components that the file has as primes by ``scaling``.
     assumed : tuple of str
@@ -168,10 +172,6 @@ class ForceTable:
         ``rps`` in rad/s, ``J``, ``thrust`` in N, where the table has them.
     model_mass : float or None
         Of the model, kg, where its campaign states an inertia to be subtracted.
-    inertia_subtracted : bool
-        Whether that of a turning model was.
-    halved : str
-        What of half of a body was doubled, in words; empty for a whole body.
     """
 
     name: str
@@ -202,14 +202,14 @@ class ForceTable:
     variants: tuple[str, ...] = ()
     symmetry: tuple[str, ...] = ()
     by_symmetry: str = ""
+    inertia_subtracted: bool = False
+    halved: str = ""
     primed: frozenset[str] = frozenset()
     assumed: tuple[str, ...] = ()
     declared: Declared | None = None
     findings: tuple[Finding, ...] = ()
     propeller: Mapping[str, Array] = field(default_factory=dict)
     model_mass: float | None = None
-    inertia_subtracted: bool = False
-    halved: str = ""
 
     def __post_init__(self) -> None:
         for name in ("motion", "controls", "forces", "errors", "propeller"):
