@@ -6,18 +6,16 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from coeflab.api.parameters import HasParameters, parameters_of
-from coeflab.core.errors import InputError, shown
+from coeflab.core.errors import InputError
 from coeflab.core.files import write_all
-from coeflab.core.texts import input_error
+from coeflab.core.texts import text_of
 from coeflab.formats import EXPORTERS, loss_tables
-from coeflab.formats.export import Export
+from coeflab.formats.export import Export, loss_refused
 from coeflab.formats.export import export as rendered
 from coeflab.formats.lacking_law import without_law
-from coeflab.formats.missing_parts import Kind
 from coeflab.vehicle.parameter_file import ParameterFile
 
-__all__ = ["Export", "ParameterFile", "export", "loss_tables", "refusal", "require_targets", "without_law"]
-WITH_MASS = "Give the vehicle a mass and an added mass."
+__all__ = ["Export", "ParameterFile", "export", "loss_refused", "loss_tables", "require_targets", "without_law"]
 
 
 def export(
@@ -64,34 +62,10 @@ def export(
     result = rendered(parameters, to, accelerations, accept_loss=accept_loss)
     if out is not None:
         if not accept_loss and not result.lossless:
-            raise refusal(result, parameters, "accept_loss=True, to write the rest", place=f"{to}, ")
+            advice = text_of("formats.loss_lacks_mass")
+            raise loss_refused(result, parameters, advice, place=f"{to}, ")
         write_all(Path(out), result.files)
     return result
-
-
-def refusal(
-    result: Export, parameters: ParameterFile, expected: str, advice: str = WITH_MASS, place: str = ""
-) -> InputError:
-    """The error about a target that loses part of a file and nobody accepted that.
-
-    Parameters
-    ----------
-    result : Export
-    parameters : ParameterFile
-    expected : str
-        What would do.
-    advice : str
-        Where the target lacks a mass.
-    place : str
-        Before the words, such as the target.
-    """
-    loss = result.loss
-    losses = () if loss is None else loss.lost
-    missing = parameters.added_mass is None and any(x.kind is Kind.MISSING for x in losses)
-    return input_error(
-        "front_door.target_loses_part", place=place, name=shown(parameters.name),
-        value="" if loss is None else loss_tables.in_short(loss), expected=expected, advice=advice if missing else "",
-    )  # fmt: skip
 
 
 def require_targets(names: Sequence[str]) -> None:

@@ -11,7 +11,7 @@ from coeflab.api.questions import si
 from coeflab.core.errors import InputError, shown
 from coeflab.core.missed import suggesting
 from coeflab.core.texts import input_error
-from coeflab.core.types import in_angles
+from coeflab.core.types import Array, in_angles
 from coeflab.law.domain import Extrapolation
 from coeflab.law.symbols import CONTROLS
 
@@ -20,7 +20,6 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from numpy.typing import ArrayLike
 
-    from coeflab.core.types import Array
     from coeflab.fits.results.fitted_model import FittedModel
 
 ANGLES = ("alpha", "beta", *CONTROLS)

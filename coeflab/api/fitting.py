@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -17,14 +17,12 @@ from coeflab.core.machine import one_thread
 from coeflab.core.texts import input_error
 from coeflab.fits import FITS, JOINT, USUAL
 from coeflab.fits.joint.one_point import one_length
+from coeflab.fits.results.fit_result import FitResult
 from coeflab.law.scaling import Scaling, require_hull
 from coeflab.study.fitting import fitted, refuse_empty, rejoined
 from coeflab.tables.force_table import ForceTable
 from coeflab.tables.planar_motion import PlanarMotionTable
 from coeflab.tables.reading import suited_fit
-
-if TYPE_CHECKING:
-    from coeflab.fits.results.fit_result import FitResult
 
 ARRAYS_NAME = "table"  # of arrays that nobody named
 

@@ -227,7 +227,7 @@ def si(value: float | str, dimension: str, keyword: str) -> float:
         typed = isinstance(value, str) or dimension == "density"
         found = with_unit(number, dimension) if typed else float(number)
     except InputError as why:
-        raise type(why)(why.found, why.expected, column=option(keyword), advice=why.advice) from None
+        raise why.at(column=option(keyword)) from None
     if dimension == "angle" and not typed and abs(found) > math.pi:
         raise input_error("front_door.rad_beyond_half", column=option(keyword), found=found)
     return found

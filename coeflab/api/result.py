@@ -11,12 +11,12 @@ import numpy as np
 from coeflab.core.errors import InputError, shown
 from coeflab.core.finding import Finding, Severity
 from coeflab.core.missed import suggesting, was_method
+from coeflab.core.table import Check, percent, with_u95
 from coeflab.core.table import Table as Shown
-from coeflab.core.table import percent, with_u95
 from coeflab.core.texts import input_error, remark
-from coeflab.core.types import in_angles
+from coeflab.core.types import Array, in_angles
 from coeflab.fits.joint.moving import LEFT_OUT
-from coeflab.fits.results.fit_result import covariance_of
+from coeflab.fits.results.fit_result import FitResult, Sweep, covariance_of
 from coeflab.fits.rows.too_few import FEW_ROWS
 from coeflab.law.coefficient import Coefficient
 from coeflab.law.symbols import primed
@@ -27,9 +27,6 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from coeflab.api.fitted_law import FittedLaw
-    from coeflab.core.table import Check
-    from coeflab.core.types import Array
-    from coeflab.fits.results.fit_result import FitResult, Sweep
     from coeflab.fits.results.straight_runs import StraightRuns
     from coeflab.tables.force_table import ForceTable
 

@@ -253,7 +253,7 @@ class LinkKeys(takes.Declaration):
             try:
                 return absent if value is None else with_unit(value, dimension)
             except InputError as why:
-                raise InputError(why.found, why.expected, column=key, advice=why.advice) from None
+                raise why.at(column=key) from None
 
         return JointRange(
             read("low", place, -np.inf), read("high", place, np.inf), read("home", place, 0.0),

@@ -62,7 +62,7 @@ def moved_by(body: Path, name: str, options: Mapping[str, Any]) -> tuple[Chain, 
             raise
         place = arm.places[int(place[6:-1])]
         if not place:
-            raise InputError(why.found, why.expected, column=f"--{key}", advice=why.advice) from None
+            raise why.at(column=f"--{key}") from None
         raise toml.fail(f"{place}.{key}", why.found, why.expected, why.advice) from None
 
 

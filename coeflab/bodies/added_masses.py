@@ -16,14 +16,13 @@ from coeflab.bodies.triangulation import Triangulation
 from coeflab.core.errors import InputError
 from coeflab.core.machine import one_thread
 from coeflab.core.texts import input_error
-from coeflab.law.added_mass import NearWall
+from coeflab.law.added_mass import AddedMass, NearWall
 from coeflab.law.water import ROUND_DENSITY
 
 if TYPE_CHECKING:
     from coeflab.bodies.body import Body
     from coeflab.bodies.simplify.simplification import Simplification
     from coeflab.core.finding import Finding
-    from coeflab.law.added_mass import AddedMass
 
 DENSEST = 1e5
 SHARE = 3  # digits

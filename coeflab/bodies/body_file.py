@@ -276,7 +276,7 @@ class MeasuredKeys(takes.Declaration):
             try:
                 self._one(symbol)
             except InputError as why:
-                raise InputError(why.found, why.expected, column=f"values.{symbol}", advice=why.advice) from None
+                raise why.at(column=f"values.{symbol}") from None
 
     def _one(self, symbol: str) -> Measured:
         name = derivative(symbol).text
@@ -345,9 +345,7 @@ class BodyFile(takes.Declaration):
             try:
                 one.require_mass()
             except InputError as why:
-                raise InputError(
-                    why.found, why.expected, column=f"configuration[{i}].{why.column}", advice=why.advice
-                ) from None
+                raise why.at(column=f"configuration[{i}].{why.column}") from None
         if self.assumed_mass is None:
             return
         if not any(c.inertia_prime is not None for c in self.configuration):

@@ -482,7 +482,7 @@ def modelled(
         try:
             parts.append(one.part(pieces, water))
         except InputError as why:
-            raise InputError(why.found, why.expected, column=f"mass[{i}].{why.column}", advice=why.advice) from None
+            raise why.at(column=f"mass[{i}].{why.column}") from None
     _require_apart(keys)
     flooded = sum(part.volume for part in parts if part.flooded)
     if flooded > volume:

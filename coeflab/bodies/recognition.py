@@ -75,9 +75,7 @@ def outline_of(shape: Shape, controls: tuple[Control, ...] = ()) -> Outline:
     """
     if isinstance(shape, Revolution):
         return of_revolution(shape)
-    if isinstance(shape, Parts):
-        return of_parts(shape, controls)
-    return of_mesh(shape, controls)
+    return of_parts(shape, controls) if isinstance(shape, Parts) else of_mesh(shape, controls)
 
 
 def _ends(track: list[Bit], cuts: Cuts) -> tuple[float, float]:

@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable
 from pathlib import Path
 
+from coeflab.core.registry import registry_of
+
 Offer = Callable[[str], list[str]]
 DIRECTIONS = (("forward", "aft"), ("starboard", "port"), ("down", "up"))
 
@@ -26,8 +28,6 @@ def or_paths(words: Iterable[str], begun: str) -> list[str]:
 
 def plugins(kind: str, begun: str) -> list[str]:
     """Plugins of a kind that begin so."""
-    from coeflab.core.registry import registry_of
-
     return names(registry_of(kind).usable(), begun)
 
 
@@ -152,7 +152,6 @@ def options_of(kind: str, name: str, begun: str) -> list[tuple[str, str]]:
         What stands on the command line, from ``--`` on.
     """
     from coeflab.core.options import described
-    from coeflab.core.registry import registry_of
 
     plugins = registry_of(kind)
     if name not in plugins.names():

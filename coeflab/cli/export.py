@@ -15,10 +15,6 @@ if TYPE_CHECKING:
     from coeflab.api.exporting import Export, ParameterFile
     from coeflab.core.errors import InputError
 
-WITH_MASS = (
-    'Single accelerations: coeflab merge FILE --set "Kpdot=... N*m/(rad/s^2)"; mass and added mass of a shape: coeflab vehicle BODY '
-    "--campaign CAMPAIGN."
-)
 EXAMPLE = "coeflab export reports/suboff/suboff_bare_hull.parameters.json --to xdyn --accept-loss"
 
 
@@ -98,8 +94,9 @@ def _exports(
     InputError
         The only target cannot hold the file at all.
     """
-    from coeflab.api.exporting import export
+    from coeflab.api.exporting import export, loss_refused
     from coeflab.core.errors import InputError
+    from coeflab.core.texts import text_of
 
     result: list[Export] = []
     refused: list[tuple[str, InputError]] = []
@@ -109,20 +106,17 @@ def _exports(
         except InputError as why:
             if len(targets) == 1:
                 raise
+            found = f"{target}: {why.found}"
             refused.append(
-                (
-                    target,
-                    InputError(
-                        f"{target}: {why.found}", why.expected, file=why.file, column=why.column, advice=why.advice
-                    ),
-                )
+                (target, InputError(found, why.expected, file=why.file, column=why.column, advice=why.advice))
             )
             continue
         if not json:
             _print_loss(one, parameters)
         result.append(one)
-        if one.loss is not None and not one.lossless and (strict or not accept_loss):
-            refused.append((target, _refusal(one, parameters, file, strict, f"{target}, " if len(targets) > 1 else "")))
+        if not one.lossless and (strict or not accept_loss):
+            advice, place = text_of("formats.loss_lacks_mass_of_file"), f"{target}, " if len(targets) > 1 else ""
+            refused.append((target, loss_refused(one, parameters, advice, strict=strict, place=place).at(file)))
     return result, refused
 
 
@@ -149,14 +143,6 @@ def _print_loss(result: Export, parameters: ParameterFile) -> None:
     if not parameters.measured:
         show.text("The parameter file has no measured points to compare the law with.")
     show.table(tables.parts(parameters, loss.water))
-
-
-def _refusal(result: Export, parameters: ParameterFile, file: Path, strict: bool, target: str) -> InputError:
-    from coeflab.api.exporting import refusal
-
-    expected = "a target that holds everything" if strict else "--accept-loss, to write the rest"
-    why = refusal(result, parameters, expected, WITH_MASS, target)
-    return type(why)(why.found, why.expected, file=file, advice=why.advice)
 
 
 def _placed(result: Sequence[Export], file: Path, out: Path | None, several: bool) -> dict[Path, bytes]:

@@ -2,13 +2,10 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from coeflab.cli import options, show
-
-if TYPE_CHECKING:
-    from coeflab.core.registry import Registry
-
+from coeflab.core.registry import Registry
 
 EXAMPLE = "coeflab formats surface"
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shlex
 from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -10,6 +11,7 @@ import typer
 
 from coeflab.cli import options, show
 from coeflab.core.errors import InputError
+from coeflab.core.files import located
 from coeflab.core.texts import input_error
 
 if TYPE_CHECKING:
@@ -84,10 +86,7 @@ def command(
 
 def _proposal(table: str, unit: str, axes: str, json: bool) -> None:
     """Unit and axes that size and outline propose, and the command that takes them."""
-    import shlex
-
     from coeflab.api.inspecting import proposed
-    from coeflab.core.files import located
     from coeflab.report.as_json.findings import finding_as_data
 
     with show.narrated():
@@ -109,12 +108,9 @@ def _raw(table: str, importer: str, option: Sequence[str], json: bool, given: Se
 
     The next command repeats what was given, as it was given, and names what is open.
     """
-    import shlex
-
     from coeflab.api.importing import Draft, Stated, open_lines, options_of, screen
     from coeflab.api.inspecting import single_run
     from coeflab.cli.draft import MOST, described, print_list
-    from coeflab.core.files import located
     from coeflab.core.wording import identifier
     from coeflab.report.tables.raw_tables import by_format
 
@@ -199,7 +195,6 @@ def _body(body: Body, density: float, json: bool) -> None:
 
 def _tables(table: str, json: bool, strict: bool, rows: int) -> None:
     from coeflab.api.inspecting import campaign_tables
-    from coeflab.core.files import located
     from coeflab.core.finding import Severity
     from coeflab.report.as_json.findings import finding
     from coeflab.report.as_json.studies import table as as_json

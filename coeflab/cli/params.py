@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+import shlex
 from pathlib import Path
 
 import typer
 
 from coeflab.cli import Command, options, show
+from coeflab.core.errors import InputError, OutputError
+from coeflab.core.files import typed, write_all
+from coeflab.core.wording import file_stem
 
 app = typer.Typer(help="Check a parameter file, write one of your own numbers or of a simulator's model; print what its fields mean.", no_args_is_help=True, rich_markup_mode=None, pretty_exceptions_enable=False, add_completion=False)  # fmt: skip
 
@@ -24,7 +28,6 @@ def check(*, file: Path, density: float | None = None, json: bool = False) -> No
     The exit code is 1 where a finding fails, and 2 where the file cannot be read, whatever its format.
     """
     from coeflab.api.parameters import read_model_file
-    from coeflab.core.errors import InputError
     from coeflab.report.tables import model_file as model_file_tables
 
     if density is not None and not 0.0 < density < float("inf"):
@@ -59,12 +62,7 @@ def convert(
     Added mass, derivatives, mass and inertia, volume and centre of buoyancy, thrusters and fins, as far as the format has them. The exit
     code is 1 where a check fails; the file is written. A file that exists is not written over.
     """
-    import shlex
-
     from coeflab.api.parameters import OWN, read_model_file
-    from coeflab.core.errors import InputError, OutputError
-    from coeflab.core.files import typed, write_all
-    from coeflab.core.wording import file_stem
     from coeflab.report.tables import model_file as model_file_tables
 
     if density is not None and not 0.0 < density < float("inf"):
@@ -135,13 +133,8 @@ def new(
     totals: Nv' holds the Munk moment. An added mass is an acceleration derivative, "Yvdot'=-0.029". --from reads a sheet of symbols,
     values, units and U95. A file that exists is replaced with --force alone.
     """
-    import shlex
-
     from coeflab.api.importing import options_of
     from coeflab.api.parameters import plausibility, read_coefficient_list, typed_file, with_sheet
-    from coeflab.core.errors import InputError, OutputError
-    from coeflab.core.files import typed, write_all
-    from coeflab.core.wording import file_stem
     from coeflab.report.tables.model_file import contents
 
     sheet = None if from_ is None else read_coefficient_list(typed(from_), axes, options_of(option))
@@ -196,10 +189,7 @@ def conform(*, program: str, write: Path | None = None, json: bool = False) -> N
     water, "acceleration": rates of u v w p q r}, null where the law has none. docs/force_law.md is the law. Exit code 1 where one is
     missed.
     """
-    import shlex
-
     from coeflab.api.parameters import conform as run
-    from coeflab.core.errors import InputError
     from coeflab.core.files import typed
     from coeflab.core.finding import Severity, worst
     from coeflab.core.table import as_check

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from coeflab.cli import options, show
+from coeflab.core.wording import listed
 
 if TYPE_CHECKING:
     from coeflab.api.motion import Simulation
@@ -109,7 +110,6 @@ def _moved(study: Study) -> None:
     """What the planned manoeuvres come to: their first figures with a value, or why there is none; with ``--wide`` all."""
     from coeflab.core.finding import Severity
     from coeflab.core.table import Table
-    from coeflab.core.wording import listed
     from coeflab.report.sections.manoeuvres import without_u95
     from coeflab.report.tables.motion import figure_table
 
@@ -156,7 +156,6 @@ def answered(found: Answer) -> None:
 
 def _tows(study: Study) -> None:
     """Of every body that was towed the coefficients, and its comparison error; of the others that they were not."""
-    from coeflab.core.wording import listed
     from coeflab.report.tables import own_cfd
 
     found = [tow for tow in study.tows if tow.tow.campaign]

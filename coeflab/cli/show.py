@@ -8,22 +8,21 @@ from __future__ import annotations
 import json
 import re
 import sys
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager, suppress
 from typing import TYPE_CHECKING, Any
 
 import typer
 
 from coeflab.api.names import FRESH_DENSITY
+from coeflab.core.finding import Finding, Severity
+from coeflab.core.table import Check, Line, Table, folded, set_lines
 from coeflab.report.printable import visible
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
     from pathlib import Path
 
     from coeflab.api.parameters import ParameterFile
-    from coeflab.core.finding import Finding
-    from coeflab.core.table import Check, Line, Table
 
 
 SLOW = 2.0
@@ -39,8 +38,8 @@ STYLES = {"title": "bold", "head": "underline", "note": "dim"}
 
 def text(line: str = "") -> None:
     """A line on standard output, folded between words to the terminal's width; a long word such as a path stays whole."""
-    for folded in _folded(visible(line), width()):
-        typer.echo(folded)
+    for part in _folded(visible(line), width()):
+        typer.echo(part)
 
 
 def lines(many: str) -> None:
@@ -57,8 +56,6 @@ def sentence(line: str) -> None:
 
 def marked(word: str, line: str) -> int:
     """A word such as ``warn``, coloured on a terminal, and behind it a sentence that hangs below itself; how many lines."""
-    from coeflab.core.table import folded
-
     behind = " " * max(6, len(word) + 2)
     first, *others = folded(visible(line), _prose(width()), behind, behind)
     typer.echo(typer.style(word, **ANSI.get(word, {})) + first[len(word) :])
@@ -96,8 +93,6 @@ def error(line: str) -> None:
 
 def table(content: Table) -> None:
     """A table: coloured on a terminal, the same letters in a pipe."""
-    from coeflab.core.table import set_lines
-
     if not content.rows:
         return
     found = set_lines(_visible(content), width() - 1)
@@ -147,8 +142,6 @@ def _prose(most: int) -> int:
 
 def _folded(line: str, most: int) -> list[str]:
     """A line as lines of at most 80 letters or the terminal's, which hang below its indent."""
-    from coeflab.core.table import folded
-
     indent = line[: len(line) - len(line.lstrip())]
     return folded(line.strip(), _prose(most), indent, indent + "  " * bool(indent))
 
@@ -196,8 +189,6 @@ def _bar(cell: str) -> Any:
 
 def plain_lines(content: Table) -> list[str]:
     """The table as aligned plain text."""
-    from coeflab.core.table import set_lines
-
     return [line.text for line in set_lines(content, width() - 1)]
 
 
@@ -319,8 +310,6 @@ def findings(found: Sequence[Check], *, notes: bool = False, most: int = 0) -> N
 
     Of more than `MOST_WARNINGS` warnings those of one check are a line, with ``--wide`` all. With ``most`` no finding begins below that many lines, failures first; what is left out is counted.
     """
-    from coeflab.core.finding import Severity
-
     counts = {s.value: sum(c.severity is s for c in found) for s in Severity}
     groups: dict[tuple[Severity, str, str, str], list[Check]] = {}
     notes = notes or whole()
@@ -377,8 +366,6 @@ def _in_short(name: str, same: Sequence[Check]) -> str:
 
 def file_findings(name: str, found: Sequence[Check]) -> None:
     """What `coeflab params check` finds wrong in a file that a command uses; nothing where all passes."""
-    from coeflab.core.finding import Severity
-
     if any(c.severity in (Severity.FAIL, Severity.WARN) for c in found):
         text(f"Checks of the file {name} (coeflab params check):")
         findings(found)
@@ -402,8 +389,6 @@ def found(findings: Sequence[Finding]) -> None:
 
 def failed(found: Sequence[Check]) -> bool:
     """Whether a finding is a failure."""
-    from coeflab.core.finding import Severity
-
     return any(c.severity is Severity.FAIL for c in found)
 
 

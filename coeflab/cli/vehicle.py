@@ -88,13 +88,7 @@ def command(
             merge.summarise(merged, others)
             _exported(study, folder / MERGED)
     for refused in study.refused:
-        why = (
-            str(refused.why)
-            .replace('"export.accept_loss": ', "")
-            .replace('"export.to": ', "")
-            .replace("accept_loss = true", "--accept-loss")
-        )
-        show.error(f"error: {why}")
+        show.error(f"error: {refused.why}")
     if study.failed:
         raise typer.Exit(1)
 

@@ -27,6 +27,7 @@ DIRECTIONS = {
     "up": (0.0, 0.0, -1.0),
 }
 FRAMES = {"FRD": ("forward", "starboard", "down"), "FLU": ("forward", "port", "up"), "CFD": ("aft", "starboard", "up")}
+FLU = np.array([1.0, -1.0, -1.0, 1.0, -1.0, -1.0])  # signs of X Y Z K M N, and of u v w p q r, from FRD to FLU and back
 FRAME_WORDS = '"FRD", "FLU", "CFD" (x aft, y starboard, z up) or three directions like "forward, port, up"'
 ANGLE_SIGNS = {
     "beta": {"v = +U sin(beta)": 1.0, "v = -U sin(beta)": -1.0},

@@ -305,7 +305,7 @@ def of_a_file(kind: type, given: Mapping[str, Any], where: str) -> Mapping[str, 
         try:
             with_unit(given[name], "angle")
         except InputError as why:
-            raise InputError(why.found, why.expected, column=f"{where}.{name}", advice=why.advice) from None
+            raise why.at(column=f"{where}.{name}") from None
     return given
 
 

@@ -308,7 +308,7 @@ def quantity(value: Any, dimension: str, *, file: str | Path | None = None, key:
         try:
             number = float(match[1]) * factor(match[2], dimension)
         except UnitsError as why:
-            raise UnitsError(why.found, why.expected, file=file, column=key, advice=why.advice) from None
+            raise why.at(file, column=key) from None
     else:
         number = float(value) if abs(value) < sys.float_info.max else math.inf
     if not math.isfinite(number):
@@ -341,7 +341,7 @@ def typed(text: str, dimension: str, option: str) -> float:
     try:
         return with_unit(bare, dimension)
     except InputError as why:
-        raise type(why)(why.found, why.expected, column=option, advice=why.advice) from None
+        raise why.at(column=option) from None
 
 
 def positive_typed(text: str, dimension: str, option: str) -> float:

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Protocol, runtime_checkable
 import numpy as np
 from numpy.typing import NDArray
 
-from coeflab.bodies.mirror_planes import NAMES, forbidden, planes_of, planes_through
+from coeflab.bodies.mirror_planes import NAMES, Planes, forbidden, planes_of, planes_through
 from coeflab.bodies.orientation import require_orientation
 from coeflab.core.errors import InputError
 from coeflab.core.registry import Plugin, Registry
@@ -28,7 +28,6 @@ from coeflab.law.transforms import force_transfer, velocity_transfer
 
 if TYPE_CHECKING:
     from coeflab.bodies.body import Body
-    from coeflab.bodies.mirror_planes import Planes
     from coeflab.bodies.outline import Outline
     from coeflab.law.added_mass import AddedMass
 

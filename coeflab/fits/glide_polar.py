@@ -19,7 +19,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -27,8 +27,9 @@ from numpy.typing import NDArray
 from coeflab.core.errors import InputError, shown
 from coeflab.core.options import measured, one_of, parse_options, words
 from coeflab.core.texts import input_error
-from coeflab.core.types import dataclass
+from coeflab.core.types import Array, dataclass
 from coeflab.fits.results.fit_result import FitResult, result_of
+from coeflab.fits.results.fitted_model import FittedModel
 from coeflab.fits.results.lack_of_fit import residuals_in_words
 from coeflab.fits.rows.only_moving import only_moving, without_blanks
 from coeflab.fits.rows.regression import Rows, model_of, variable
@@ -36,15 +37,11 @@ from coeflab.fits.statistics.linear_model import fit_linear
 from coeflab.fits.statistics.robust_errors import t_probability
 from coeflab.law.coefficient import Coefficient, Parts, Status
 from coeflab.law.domain import Domain, Extrapolation
+from coeflab.law.scaling import Scaling
 from coeflab.law.symbols import FORCES, LINEAR
 from coeflab.law.terms import Term, design
 from coeflab.law.transforms import wind_errors, wind_forces
-
-if TYPE_CHECKING:
-    from coeflab.core.types import Array
-    from coeflab.fits.results.fitted_model import FittedModel
-    from coeflab.law.scaling import Scaling
-    from coeflab.tables.force_table import ForceTable
+from coeflab.tables.force_table import ForceTable
 
 
 def read_printed(items: Sequence[str], place: str) -> dict[str, float]:

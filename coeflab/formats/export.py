@@ -14,7 +14,7 @@ import numpy as np
 from coeflab.core.errors import InputError, PluginError, shown
 from coeflab.core.machine import one_thread
 from coeflab.core.missed import suggesting
-from coeflab.core.texts import input_error
+from coeflab.core.texts import input_error, text_of
 from coeflab.core.types import brief, in_angles
 from coeflab.core.wording import PREFIX, file_stem
 from coeflab.formats import (
@@ -37,6 +37,7 @@ if TYPE_CHECKING:
     from coeflab.vehicle.parameter_file import ParameterFile
 
 LONGEST = 255
+ACCEPT = "--accept-loss"
 
 
 @suggesting
@@ -113,7 +114,7 @@ class PlannedExport:
     file : Path or None
         The plan's, for messages.
     place : str
-        The table in it.
+        The table in it; empty where a command line stands for the plan.
     """
 
     to: str
@@ -123,9 +124,9 @@ class PlannedExport:
     file: Path | None = None
     place: str = "export"
 
-    def key(self, name: str) -> str:
-        """Dotted name of a key."""
-        return f"{self.place}.{name}"
+    def key(self, name: str) -> str | None:
+        """Dotted name of a key; None where no plan is written."""
+        return f"{self.place}.{name}" if self.place else None
 
 
 @one_thread()
@@ -259,7 +260,7 @@ def refuse_unknown(planned: Sequence[PlannedExport]) -> None:
         try:
             EXPORTERS.load(p.to)
         except PluginError as why:
-            raise PluginError(f"{p.file}, {shown(p.key('to'))}: {why}" if p.file else str(why)) from None
+            raise PluginError(f"{p.file}, {shown(str(p.key('to')))}: {why}" if p.file else str(why)) from None
 
 
 def placed(exports: Iterable[Export]) -> dict[str, bytes]:
@@ -324,13 +325,36 @@ def _accepted(p: PlannedExport, parameters: ParameterFile) -> Export:
     except InputError as why:
         found = f"{why.found} in {parameters.name} for {p.to}"
         raise InputError(found, why.expected, file=p.file, column=p.key("to"), advice=why.advice) from None
-    if result.loss is not None and not result.lossless and (p.strict or not p.accept_loss):
-        raise InputError(
-            f"{p.to} cannot hold all of {parameters.name}: {in_short(result.loss)}",
-            "a target that holds everything" if p.strict else "accept_loss = true, once the loss has been read",
-            file=p.file,
-            column=p.key("strict" if p.strict else "accept_loss"),
-            advice=f"The study and its parameter file are written without this export; `coeflab export FILE --to {p.to}` "
-            "prints the whole loss.",
-        )
+    if not result.lossless and (p.strict or not p.accept_loss):
+        accept = "accept_loss = true" if p.place else ACCEPT
+        lost = loss_refused(result, parameters, strict=p.strict, place=f"{p.to}, ", accept=accept)
+        column, advice = p.key("strict" if p.strict else "accept_loss"), text_of("formats.loss_of_plan", to=p.to)
+        raise InputError(lost.found, lost.expected, file=p.file, column=column, advice=advice)
     return result
+
+
+def loss_refused(
+    result: Export, parameters: ParameterFile, advice: str = "", *, strict: bool = False, place: str = "",
+    accept: str = ACCEPT,
+) -> InputError:  # fmt: skip
+    """The error about a target that loses part of a file and nobody accepted that.
+
+    Parameters
+    ----------
+    result : Export
+    parameters : ParameterFile
+    advice : str
+        Where the target lacks a mass.
+    strict : bool
+        No loss is accepted.
+    place : str
+        Before the words, such as the target.
+    accept : str
+        What accepts the loss.
+    """
+    loss = result.loss
+    missing = loss is not None and parameters.added_mass is None and any(x.kind is Kind.MISSING for x in loss.lost)
+    return input_error(
+        "formats.loses_part", place=place, name=shown(parameters.name), value="" if loss is None else in_short(loss),
+        expected=text_of("formats.without_loss" if strict else "formats.with_loss", accept=accept), advice=advice if missing else "",
+    )  # fmt: skip

@@ -4,22 +4,17 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
 
 from coeflab.core.table import ABSENT, Table, coefficient, number
 from coeflab.core.texts import remark
-from coeflab.formats.loss import LOSSLESS
+from coeflab.formats.loss import LOSSLESS, Apart, Loss
 from coeflab.formats.missing_parts import Kind
 from coeflab.law.added_mass import potential_part
 from coeflab.law.symbols import COMPONENTS, MOTIONS
 from coeflab.vehicle.force_law import points_of
-from coeflab.vehicle.inertia import MEASURED, stated_accelerations
+from coeflab.vehicle.inertia import MEASURED, WaterInertia, stated_accelerations
+from coeflab.vehicle.law_at_points import LawAtPoints
 from coeflab.vehicle.parameter_file import ParameterFile
-
-if TYPE_CHECKING:
-    from coeflab.formats.loss import Apart, Loss
-    from coeflab.vehicle.inertia import WaterInertia
-    from coeflab.vehicle.law_at_points import LawAtPoints
 
 RARE = "astern, broadside and at rest"
 

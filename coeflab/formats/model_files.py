@@ -18,12 +18,13 @@ from coeflab.core.types import brief
 from coeflab.core.wording import listed
 from coeflab.formats import PARAMETER_IMPORTERS, NoDensityError
 from coeflab.law.water import ROUND_DENSITY
+from coeflab.vehicle.imported_numbers import DENSITY_OF_WATER
 from coeflab.vehicle.parameter_file import ParameterFile, file_typed, read_parameter_file, refuse_shape
 from coeflab.vehicle.parameter_refusals import first_complaint
 from coeflab.vehicle.plausibility import plausibility
 
 OWN = "coeflab"
-DENSITY = "density"
+OF_DENSITY = frozenset({DENSITY_OF_WATER, "model.in_slugs", "plausibility.air"})  # findings
 LEFT_OUT = "model.left_out"
 
 
@@ -130,13 +131,17 @@ def _imported(path: Path, kind: str, density: float | None) -> ModelFile:
         )
         parameters = parameters.model_copy(update={"findings": (*parameters.findings, words)})
     findings += importer.examine(path)
-    known = any(c.subject.startswith(DENSITY) for c in findings)
+    known = any(map(_is_of_density, findings))
     asked = {_question(c) for c in findings if c.severity in (Severity.WARN, Severity.FAIL)}
     found = [
         c for c in plausibility(parameters, importer.signs)
-        if not (known and c.subject == DENSITY) and _question(c) not in asked
+        if not (known and _is_of_density(c)) and _question(c) not in asked
     ]  # fmt: skip
     return ModelFile(kind, parameters, (*findings, *found))
+
+
+def _is_of_density(check: Check) -> bool:
+    return check.finding is not None and check.finding.code in OF_DENSITY
 
 
 def _question(check: Check) -> tuple[str, str]:

@@ -14,7 +14,7 @@ from coeflab.core.types import Array
 from coeflab.core.wording import listed
 from coeflab.law.symbols import ANGLE_NAMES, CONTROLS, MOTIONS
 from coeflab.motion.manoeuvre import UPRIGHT, Figure, Manoeuvre, Phase
-from coeflab.motion.trajectory import UNCOVERED, WITHOUT_DATA, Trajectory, covered_ranges, outside, outside_in_words
+from coeflab.motion.trajectory import WITHOUT_DATA, Trajectory, Uncovered, covered_ranges, outside, outside_in_words
 from coeflab.motion.turn_limits import unlimited
 from coeflab.motion.vehicle import Vehicle
 from coeflab.vehicle.parameter_parts import THRUST, ParameterThruster
@@ -177,7 +177,7 @@ def _images(one: ParameterThruster, other: ParameterThruster) -> bool:
 
 def decisive(names: Iterable[str], rate: str) -> list[str]:
     """Of what a motion has left, what leaves a turn that grows of itself open: a range of data, or the rate, on which there are none."""
-    return [name for name in names if not name.endswith(UNCOVERED) or name == f"{rate}': {UNCOVERED}"]
+    return [name for name in names if not isinstance(name, Uncovered) or name.variable == f"{rate}'"]
 
 
 def undetermined_at_once(vehicle: Vehicle, manoeuvre: Manoeuvre, figures: Sequence[Figure]) -> str:
@@ -204,7 +204,7 @@ def undetermined_at_once(vehicle: Vehicle, manoeuvre: Manoeuvre, figures: Sequen
     if not lacking:
         return ""
     why = f"The vehicle is {lacking}."
-    if any(f[0] for name, f in flags.items() if not name.endswith(UNCOVERED)):
+    if any(f[0] for name, f in flags.items() if not isinstance(name, Uncovered)):
         return " ".join((*outside_in_words(vehicle, manoeuvre.velocity, angles), why))
     none = all(f.value is None for f in figures) and any(f.status == NOT_DETERMINED for f in figures)
     return why if none and f"{rate}'" not in covered_ranges(vehicle) else ""
@@ -240,10 +240,8 @@ def judged(figure: Figure, trajectory: Trajectory, until: float | None, lacking:
     names = [name for name, flags in trajectory.outside.items() if np.any(flags & before)]
     if not names:
         return figure
-    bare = [
-        in_field_terms(n.removesuffix(f": {UNCOVERED}")) for n in names if n.endswith(UNCOVERED) and n != WITHOUT_DATA
-    ]
-    left = [in_field_terms(name) for name in names if not name.endswith(UNCOVERED)]
+    bare = [in_field_terms(n.variable) for n in names if isinstance(n, Uncovered) and n != WITHOUT_DATA]
+    left = [in_field_terms(name) for name in names if not isinstance(name, Uncovered)]
     words = (f"beyond the data in {', '.join(left)}" if left else "", f"no data on {', '.join(bare)}" if bare else "")
     beyond = "; ".join(filter(None, words)) or "no force table stands behind the file"
     if lacking and decisive(names, rate):

@@ -19,7 +19,7 @@ from coeflab.motion.approach import at_once, decisive, undetermined_at_once
 from coeflab.motion.manoeuvre import Manoeuvre, PlannedManoeuvre, Simulation
 from coeflab.motion.manoeuvres import MANOEUVRES
 from coeflab.motion.simulators import SIMULATORS
-from coeflab.motion.trajectory import UNCOVERED, Trajectory
+from coeflab.motion.trajectory import Trajectory, Uncovered
 from coeflab.motion.turn_limits import linear_growth, unlimited
 from coeflab.motion.vehicle import Vehicle, vehicle
 from coeflab.vehicle.force_law import ahead_from
@@ -224,7 +224,7 @@ def determined_until(trajectory: Trajectory, vehicle: Vehicle) -> tuple[float, s
         lacking = unlimited(vehicle, rate, speed) if rate in vehicle.free and speed > 0.0 else ""
         if lacking:
             left = decisive((name for name, f in trajectory.outside.items() if f.any()), rate)
-            if any(name.endswith(UNCOVERED) for name in left):
+            if any(isinstance(name, Uncovered) for name in left):
                 return 0.0, f"not determined: {lacking}"
             if left:
                 first = float(min(trajectory.time[trajectory.outside[name]][0] for name in left))

@@ -148,8 +148,25 @@ Flags = NDArray[np.bool_]
 # A value on the edge of a range is inside, with the rounding of a motion; motions below MOVING count as none.
 SLACK, MOVING = 1e-6, 1e-3
 ASTERN, TABLE_EDGE = "astern", "beyond a table's edge"
-UNCOVERED = "no data cover it"
-WITHOUT_DATA = f"u': {UNCOVERED}"  # of a vehicle without any range, as of estimates
+
+
+class Uncovered(str):
+    """A variable that no range speaks of, as flags of a motion name it."""
+
+    __slots__ = ("variable",)
+    variable: str
+
+    def __new__(cls, variable: str) -> Uncovered:
+        """The name in words."""
+        self = super().__new__(cls, f"{variable}: no data cover it")
+        self.variable = variable
+        return self
+
+    def __getnewargs__(self) -> tuple[str]:
+        return (self.variable,)
+
+
+WITHOUT_DATA = Uncovered("u'")  # of a vehicle without any range, as of estimates
 
 
 def outside(vehicle: Vehicle, velocity: Array, controls: Mapping[str, Array]) -> dict[str, Flags]:
@@ -178,7 +195,7 @@ def outside(vehicle: Vehicle, velocity: Array, controls: Mapping[str, Array]) ->
     for name in (*(f"{m}'" for m in MOTIONS[bool(vehicle.covered) :]), *(c for c in CONTROLS if c in controls)):
         motion, x = values[name]
         if motion not in spoken and np.any(np.abs(x) > MOVING):
-            out[f"{name}: {UNCOVERED}"] = np.abs(x) > MOVING
+            out[Uncovered(name)] = np.abs(x) > MOVING
     speed = np.maximum(np.linalg.norm(velocity[:, :3], axis=1), SLOWEST)
     out[ASTERN] = velocity[:, 0] < -SLACK * speed
     if np.any(vehicle.law.tabled):

@@ -14,8 +14,8 @@ import numpy as np
 
 from coeflab.core.errors import CoeflabError
 from coeflab.core.finding import Severity
-from coeflab.core.several import labels
-from coeflab.core.table import ABSENT, Table, number, percent
+from coeflab.core.several import Several, labels
+from coeflab.core.table import ABSENT, Check, Table, number, percent
 from coeflab.core.types import Array
 from coeflab.core.wording import counted, listed
 from coeflab.law.coefficient import Coefficient, CoefficientSet
@@ -40,8 +40,6 @@ from coeflab.report.tables import nouns as tables
 
 if TYPE_CHECKING:
     from coeflab.bodies.body import Body
-    from coeflab.core.several import Several
-    from coeflab.core.table import Check
     from coeflab.fits.results.fit_result import FitResult
     from coeflab.fits.results.fitted_model import FittedModel
     from coeflab.fits.uncertainty.budget import Budget

@@ -49,9 +49,7 @@ def _broken(word: str) -> str:
 
 def glyphs(text: str) -> str:
     """The text with ``U+XXXX`` in place of every character that the fonts lack or that steers the direction of writing."""
-    if text.isascii() and text.isprintable():
-        return text
-    return "".join(_shown(ch) for ch in text)
+    return text if text.isascii() and text.isprintable() else "".join(_shown(ch) for ch in text)
 
 
 def visible(text: str) -> str:

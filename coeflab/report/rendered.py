@@ -3,21 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
 
 from coeflab.core.machine import one_thread
 from coeflab.formats.export import parameter_files_rendered, placed
+from coeflab.motion.manoeuvre import Simulation
+from coeflab.motion.uncertainty.uncertainty import Carried
 from coeflab.report.content import document
 from coeflab.report.document import Document, Section
 from coeflab.report.formats import REPORTERS
 from coeflab.report.reproduction import digest_of
 from coeflab.report.sections.estimates import answer_of_merge, manoeuvre_table, replaced_section
-
-if TYPE_CHECKING:
-    from coeflab.motion.manoeuvre import Simulation
-    from coeflab.motion.uncertainty.uncertainty import Carried
-    from coeflab.study.study import Study
-    from coeflab.vehicle.merge import Merged
+from coeflab.study.study import Study
+from coeflab.vehicle.merge import Merged
 
 
 @one_thread()

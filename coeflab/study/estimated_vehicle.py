@@ -425,7 +425,7 @@ def asked(
     )
     require_hull(length, "--length")
     scaling = Scaling(positive_typed(length, "length", "--length"), "length") if length else None
-    exports = tuple(PlannedExport(target, accept_loss) for target in dict.fromkeys(to))
+    exports = tuple(PlannedExport(target, accept_loss, place="") for target in dict.fromkeys(to))
     title = body.title if body.title and not body.datum.id.endswith(body.title) else body.name
     plan = Plan(stem(body.name), title, (), conditions=conditions, scaling=scaling, exports=exports, method=method)
     return plan, Stated(weight, centre, turning, unstated)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -14,22 +14,17 @@ from coeflab.core.texts import input_error, words
 from coeflab.fits import FITS, CompletingFit
 from coeflab.fits.joint.moving import LEFT_OUT, fits_about
 from coeflab.fits.joint.rows import joint_name
-from coeflab.fits.results.fit_result import Shared, covariance_of
+from coeflab.fits.results.fit_result import FitResult, Shared, covariance_of
 from coeflab.fits.rows.sweeps import FEWEST_SETTINGS, arm_shift
 from coeflab.fits.rows.too_few import FEW_ROWS
-from coeflab.fits.uncertainty.budget import as_estimates, budgets_of, with_budget
+from coeflab.fits.uncertainty.budget import Budget, as_estimates, budgets_of, with_budget
 from coeflab.fits.uncertainty.model_budget import with_model_budgets
 from coeflab.law.coefficient import Status
+from coeflab.law.scaling import Scaling
 from coeflab.law.symbols import MOTIONS, derivative, primed
 from coeflab.tables.assumptions import carried
-from coeflab.tables.force_table import AT_REST
+from coeflab.tables.force_table import AT_REST, ForceTable
 from coeflab.tables.planar_motion import PlanarMotionTable
-
-if TYPE_CHECKING:
-    from coeflab.fits.results.fit_result import FitResult
-    from coeflab.fits.uncertainty.budget import Budget
-    from coeflab.law.scaling import Scaling
-    from coeflab.tables.force_table import ForceTable
 
 FEWEST = 3
 COMBINES = "manoeuvring_model"  # the fit of rows that vary several motions at once

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from coeflab.bodies.readers import read_body
 from coeflab.core.errors import InputError, ScalingMismatchError, shown
 from coeflab.core.files import shipped, stem
 from coeflab.core.finding import Finding
@@ -25,12 +26,12 @@ from coeflab.law.symbols import derivative
 from coeflab.study.checking import checked
 from coeflab.study.checks.sizes import UNITS_APART, masses_of_models
 from coeflab.study.fitting import FEWEST, fitted, refuse_empty, rejoined
-from coeflab.study.study import Conversion, Plan, Study
+from coeflab.study.study import Conversion, Plan, PlannedConversion, PlannedJoint, Study
 from coeflab.study.symmetry import confirmed, of_bodies
 from coeflab.tables.reading import read_tables, table_at
 from coeflab.vehicle.assemble import assemble
 from coeflab.vehicle.gathered import PlannedParameterFile
-from coeflab.vehicle.parameter_file import located_refusals, read_parameter_file
+from coeflab.vehicle.parameter_file import ParameterFile, located_refusals, read_parameter_file
 from coeflab.vehicle.published_values import compare, compare_set, read_references
 
 if TYPE_CHECKING:
@@ -41,9 +42,7 @@ if TYPE_CHECKING:
     from coeflab.formats.export import Export, Refused
     from coeflab.law.scaling import Scaling
     from coeflab.motion.manoeuvre import Simulation
-    from coeflab.study.study import PlannedConversion, PlannedJoint
     from coeflab.tables.force_table import ForceTable
-    from coeflab.vehicle.parameter_file import ParameterFile
 
 
 def settled(table: ForceTable, plan: Plan) -> ForceTable:
@@ -251,7 +250,6 @@ def _hulls(
     if all(g.hull is None for g in groups):
         return {}
     from coeflab.bodies.added_masses import added_masses
-    from coeflab.bodies.readers import read_body
 
     known: dict[tuple[Path, str], Triangulation] = {}
     out = {}
@@ -319,15 +317,12 @@ def _body(plan: Plan) -> Body | None:
     """What the plan names; a shipped name is a folder."""
     if plan.body is None:
         return None
-    from coeflab.bodies.readers import read_body
 
     return read_body(plan.body / "body.toml" if plan.body.is_dir() else plan.body)
 
 
 def _bodies(plan: Plan, wanted: Set[str]) -> tuple[Body, ...]:
     """The plan's own and the hulls of its parameter files; of the shipped ones, which are called as their folders, the wanted."""
-    from coeflab.bodies.readers import read_body
-
     geometry = shipped("geometry")
     named = dict.fromkeys(h for h in (plan.hull, *(g.hull for g in plan.parameter_files)) if h is not None)
     hulls = (h for h in named if h.parent != geometry or h.name in wanted)

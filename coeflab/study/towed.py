@@ -17,24 +17,20 @@ from numpy.typing import NDArray
 
 from coeflab.core.types import brief
 from coeflab.core.wording import listed
-from coeflab.law.coefficient import Status
+from coeflab.law.coefficient import Coefficient, Status
 from coeflab.law.symbols import ANGULAR, LINEAR, derivative, primed
 from coeflab.study.lines import line
 from coeflab.study.secants import secant
-from coeflab.study.validation import against_printed, reynolds_of, validation, without_grid
+from coeflab.study.validation import Validation, against_printed, reynolds_of, validation
 from coeflab.tables.campaign import FOURFOLD
-from coeflab.tables.force_table import AT_REST
-from coeflab.vehicle.published_values import Relation
+from coeflab.tables.force_table import AT_REST, ForceTable
+from coeflab.vehicle.published_values import Reference, Relation
 
 if TYPE_CHECKING:
     from coeflab.fits.results.fit_result import FitResult
     from coeflab.fits.uncertainty.budget import Budget
-    from coeflab.law.coefficient import Coefficient
     from coeflab.law.scaling import Scaling
     from coeflab.study.study import PlannedTow, Study
-    from coeflab.study.validation import Validation
-    from coeflab.tables.force_table import ForceTable
-    from coeflab.vehicle.published_values import Reference
 
 # A quarter of a turn about x: v -> w, Y -> Z, N -> -M, r -> -q.
 TURNED = {"Zw": ("Yv", 1.0), "Mw": ("Nv", -1.0), "Zq": ("Yr", -1.0), "Mq": ("Nr", 1.0)}
@@ -77,6 +73,10 @@ class TowedRow:
         How far other turbulence models move the value, 95 % half-width, beside U95; None where none was tried.
     no_grid : str
         Why U95 leaves the grid out: ``no grid study``, ``grid study divergent``; empty where it holds it.
+    is_turned : bool
+        Whether fourfold symmetry sets it equal to another one.
+    varies : str
+        Motion that no run varies, or too few, where there is no value; empty for straight runs.
     """
 
     symbol: str
@@ -92,6 +92,8 @@ class TowedRow:
     reasons: tuple[str, ...] = ()
     line: float | None = None
     model: float | None = None
+    is_turned: bool = False
+    varies: str = ""
 
     @property
     def is_result(self) -> bool:
@@ -187,28 +189,20 @@ def _row(
     own = _coefficient(fits, source or symbol)
     budget = _budget(study, tow.campaign, source or symbol)
     u_grid = None if budget is None else budget.part("grid")
-    no_grid = "" if budget is None else without_grid(budget.unassessed)
+    no_grid = "" if budget is None or budget.open_grid is None else budget.open_grid.reason
     if own is None or own.value is None:
         missing, why = _missing(study, tow, source or symbol, own)
         one = secant(_tables(study, tow.campaign), source or symbol, scaling) if missing == OPEN and scaling else None
         if one is None or one.value is None:
-            return TowedRow(symbol, None, u_grid, missing, why, published)
+            return TowedRow(symbol, None, u_grid, missing, why, published, varies=_variable(source or symbol))
         if source:
             one = replace(one, symbol=symbol, value=sign * one.value)
         return TowedRow(symbol, one, u_grid, "", f"{SECANT}; {why}", published, why_none=SECANT, no_grid=no_grid)
     if source:
         turned = replace(own, symbol=symbol, value=sign * own.value)
         equal = f"{'-' if sign < 0.0 else ''}{primed(source)}"
-        return TowedRow(
-            symbol,
-            turned,
-            u_grid,
-            "",
-            f"set equal to {equal} by fourfold symmetry",
-            published,
-            why_none=f"as {primed(source)}",
-            no_grid=no_grid,
-        )
+        why, none = f"set equal to {equal} by fourfold symmetry", f"as {primed(source)}"
+        return TowedRow(symbol, turned, u_grid, "", why, published, why_none=none, no_grid=no_grid, is_turned=True)
     why = _left_out(study, tow.campaign, symbol)
     result = None if budget is None else _against(study, budget, own, fits, tests)
     if result is None:

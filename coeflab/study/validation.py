@@ -16,18 +16,17 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from coeflab.core.types import brief
-from coeflab.fits.uncertainty.budget import BOUND_ONLY
+from coeflab.fits.uncertainty.grid_convergence import Convergence
 from coeflab.law.friction_line import FRICTION_APART, friction_line
 from coeflab.law.symbols import derivative
 from coeflab.study.symmetry import zeros
-from coeflab.tables.force_table import STUDIES
+from coeflab.tables.force_table import STUDIES, ForceTable
 from coeflab.vehicle.stability import INDICES, index_gradient, stability_index
 
 if TYPE_CHECKING:
-    from coeflab.fits.uncertainty.budget import Budget
+    from coeflab.fits.uncertainty.budget import Budget, OpenGrid
     from coeflab.law.coefficient import CoefficientSet
     from coeflab.study.study import Study
-    from coeflab.tables.force_table import ForceTable
     from coeflab.vehicle.published_values import Reference
 
 
@@ -132,6 +131,8 @@ class Validation:
         Whether the body's symmetry makes the coefficient zero, and the computation finds it zero.
     method : str
         Of a measured side that is a printed derivative by another method, such as ``PMM``; empty for our fit to a steady test.
+    open_grid : OpenGrid or None
+        Of the computation, as `Budget` has it.
     """
 
     symbol: str
@@ -149,6 +150,7 @@ class Validation:
     reynolds: tuple[float | None, float | None] = (None, None)
     zero: bool = False
     method: str = ""
+    open_grid: OpenGrid | None = None
 
     @property
     def error(self) -> float:
@@ -176,7 +178,7 @@ class Validation:
             "zero by symmetry" if self.zero else "",
             f"the test used another method, {self.method}" if self.method else "",
             "the test has no U95" if self.u_measured is None else "",
-            without_grid(self.lacking),
+            self.open_grid.reason if self.open_grid else "",
             self._friction(),
         )
         return "; ".join(filter(None, reasons))
@@ -184,11 +186,10 @@ class Validation:
     @property
     def reasons(self) -> tuple[str, ...]:
         """The same as clauses of a sentence, without the Reynolds numbers."""
-        lacking = without_grid(self.lacking)
-        state = lacking.removeprefix("grid study ").removesuffix(BOUND_ONLY)
-        grid = {"": "", "no grid study": "no grid study", "divergent": "grid study diverged"}.get(
-            state, f"no error from the grid study: {state}"
-        )
+        state = None if self.open_grid is None else self.open_grid.study
+        grid = "grid study diverged" if state is Convergence.DIVERGENT else f"no error from the grid study: {state}"
+        if state is None:
+            grid = "" if self.open_grid is None else self.open_grid.reason
         clauses = (
             "zero by symmetry, and the test has a bias" if self.zero else "",
             f"the test used another method, {self.method}" if self.method else "",
@@ -288,12 +289,6 @@ def against_printed(s: Budget, reference: Reference, among: CoefficientSet) -> V
     return None
 
 
-def without_grid(lacking: Sequence[str]) -> str:
-    """Why an uncertainty leaves the grid out: ``no grid study``, ``grid study divergent``; empty where it holds the grid."""
-    grid = next((name for name in lacking if name.partition(" ")[0] == "grid"), "")
-    return "" if not grid else "no grid study" if grid == "grid" else f"grid {grid.removeprefix('grid ').strip('()')}"
-
-
 def by_measured_number(found: Sequence[Validation]) -> tuple[tuple[Validation, ...], ...]:
     """Comparisons with a verdict, those of one measured number together; it counts once, and holds where every one does."""
     groups: dict[tuple[str, str], list[Validation]] = {}
@@ -328,6 +323,7 @@ def validation(
         lacking=(*s.unassessed, *([] if s.model_spread is None else [MODEL])),
         lacking_measured=d.unassessed,
         reynolds=reynolds,
+        open_grid=s.open_grid,
     )
 
 

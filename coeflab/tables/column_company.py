@@ -19,7 +19,7 @@ from coeflab.tables.column_map import (
     read_column_map,
 )
 from coeflab.tables.column_names import UNKNOWN, named_as
-from coeflab.tables.proposals import AREA, LENGTH_OF, OPEN, PURE, Proposal, proposed
+from coeflab.tables.proposals import AREA, LENGTH_OF, OPEN, PURE, Proposal, Reason, allowed, proposed
 from coeflab.tables.raw_table import RawColumn, RawTable
 from coeflab.tables.vocabulary import folded, vocabulary
 from coeflab.tables.words.axes import BODY_AXES
@@ -70,7 +70,13 @@ def proposals(
             one = by_stated_area(_of_company(proposed(column, stated), column, pure, names, frame, stated), known or {})
         one = replace(one, certain=False) if offered and "coefficient" in one.text else one
         one = _along_the_body(one, column, raw.stated[BODY_AXES].place) if BODY_AXES in raw.stated else one
-        if one.why == UNKNOWN and column is raw.columns[0] and _is_index(column):
+        if (
+            one.reason is Reason.UNKNOWN
+            and not one.text
+            and not allowed(column.unit)
+            and column is raw.columns[0]
+            and _is_index(column)
+        ):
             one = Proposal("point", "it counts the rows")
         given = one.meaning
         if given is not None and given.name not in ("label", "ignore"):
@@ -87,12 +93,12 @@ def proposals(
                     taken[given.plain] = column.name
                 else:
                     settled = _is_settled(out[first], raw.columns[first], one, column)
-                    one = Proposal("ignore" * settled, again.format(taken[given.plain]))
+                    one = Proposal("ignore" * settled, again.format(taken[given.plain]), reason=Reason.REPEATED)
             else:
                 taken[given.plain] = column.name
         out.append(_still(one, column, column.name in of_rounding))
     out = _beside_the_flow(out, taken)
-    if len(doubles := [o for o in out if not o.text and o.why.endswith(" already")]) > FEW_STRANGE:
+    if len(doubles := [o for o in out if not o.text and o.reason is Reason.REPEATED]) > FEW_STRANGE:
         out = [replace(o, text="ignore", note=o.why) if o in doubles else o for o in out]
     out = _without_strangers(raw, out)
     for i, column in enumerate(raw.columns):
@@ -101,7 +107,7 @@ def proposals(
             read_column_map(n).name for c in raw.columns if (n := named_as(c.name)) in ("Y", "N", "side")
         }
         companion = ({"alpha", "beta", "R"} | over) & set(taken) and not {"U", "v"} & set(taken)
-        if companion and column.name.strip() == "V" and out[i].why.startswith(UNKNOWN) and fits(column.unit, "speed"):
+        if companion and column.name.strip() == "V" and out[i].reason is Reason.UNKNOWN and fits(column.unit, "speed"):
             out[i] = Proposal(f"U [{column.unit}]", "its unit, beside an angle or a radius")
             taken["U"] = column.name
         if folded(column.name) in vocabulary().lists["ship"] and taken.get("U", column.name) != column.name:
@@ -146,7 +152,7 @@ def _is_settled(before: Proposal, first: RawColumn, one: Proposal, column: RawCo
 def _still(one: Proposal, column: RawColumn, rounded: bool) -> Proposal:
     """A column of zeros that is asked is of no use to a fit."""
     zeros = not one.text and len(column.values) > 0 and not column.is_text and not np.any(column.values)
-    return Proposal("ignore", f"{one.why}; {OF_ROUNDING if rounded else STILL}") if zeros else one
+    return Proposal("ignore", f"{one.why}; {OF_ROUNDING if rounded else STILL}", reason=one.reason) if zeros else one
 
 
 def _is_index(column: RawColumn) -> bool:
@@ -248,7 +254,7 @@ def _of_company(
         and column.unit in PURE
         and not {"alpha", "beta", "lift", "cd"} & (names | pure)
     ):
-        return Proposal("ignore", PROPELLER)
+        return Proposal("ignore", PROPELLER, reason=Reason.PROPELLER)
     if "cd" in pure and column.unit in PURE and column.name.strip() in ("M", "N") and known.size:
         is_mach = one.text[0] == "M" and known.min() > 0.0 and (known.max() < MACH or REYNOLDS & names)
         if is_mach or (one.text[0] == "N" and known.min() >= 1.0 and np.all(known == np.round(known))):
@@ -298,7 +304,7 @@ def _without_strangers(raw: RawTable, out: list[Proposal]) -> list[Proposal]:
     """
     strange = [
         i for i, one in enumerate(out)
-        if not one.text and one.why.startswith(UNKNOWN) and raw.columns[i].name.strip() != "V"
+        if not one.text and one.reason is Reason.UNKNOWN and raw.columns[i].name.strip() != "V"
     ]  # fmt: skip
     roles, many = {one.role for one in out}, len(strange) > MOST_ASKED
     if len(strange) <= FEW_STRANGE or "force" not in roles or roles.isdisjoint(VARIED | {"speed"} if many else VARIED):

@@ -156,6 +156,10 @@ class ForceTable:
         What the body is declared to be exactly: port-starboard, up-down, fourfold.
     by_symmetry : str
         Name of the table whose rows these are, turned by that symmetry; empty for rows that were run.
+    inertia_subtracted : bool
+        Whether the inertia of a turning model was taken out of its forces.
+    halved : str
+        What of half of a body was doubled, in words; empty for a whole body.
     primed : frozenset of str
         Components that the file has as primes by ``scaling``.
     assumed : tuple of str
@@ -198,6 +202,8 @@ class ForceTable:
     variants: tuple[str, ...] = ()
     symmetry: tuple[str, ...] = ()
     by_symmetry: str = ""
+    inertia_subtracted: bool = False
+    halved: str = ""
     primed: frozenset[str] = frozenset()
     assumed: tuple[str, ...] = ()
     declared: Declared | None = None

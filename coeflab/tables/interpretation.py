@@ -16,9 +16,9 @@ from coeflab.core.units import SI, quantity
 from coeflab.core.wording import listed
 from coeflab.law.symbols import LINEAR
 from coeflab.tables.campaign import Cut, cut_of
-from coeflab.tables.column_company import FEW_STRANGE, PROPELLER, proposals
+from coeflab.tables.column_company import FEW_STRANGE, proposals
 from coeflab.tables.column_map import ANGLES, FORCES, WIND, ColumnMap, read_column_map, unturned
-from coeflab.tables.column_names import UNKNOWN, named_as
+from coeflab.tables.column_names import named_as
 from coeflab.tables.evidence import Evidence, across_planes, astern, evidence, turn_of
 from coeflab.tables.force_table import FEWEST_SPEEDS
 from coeflab.tables.level_columns import slopes_by_idle_columns
@@ -37,7 +37,7 @@ from coeflab.tables.mapping import (
     known_as,
     with_unit,
 )
-from coeflab.tables.proposals import AREA, Proposal, coefficient_by_sizes, lacks_sizes, taken_as
+from coeflab.tables.proposals import AREA, Proposal, Reason, coefficient_by_sizes, lacks_sizes, may_be_force, taken_as
 from coeflab.tables.questions import Question, known_sizes, questions
 from coeflab.tables.raw_table import HALF_MODEL, RawColumn, RawTable
 from coeflab.tables.settings import EXTRA, OF_ARMS, SYMMETRY, VISCOSITY, Setting, Settings, frame_of, read_setting
@@ -46,9 +46,7 @@ from coeflab.tables.time_record import IDENTIFY, clock, record_over_time
 from coeflab.tables.vocabulary import folded, vocabulary
 from coeflab.tables.words.axes import BODY_AXES, TURN_OF_R
 
-ALLOWED_FORCES = frozenset("XYZKMN")  # how the text that says what a unit allows begins
 MOST_IDLE = 5  # columns that a warning names
-HALF_ONLY = "of half of the body"  # why a column of it is left out
 
 
 @dataclass(frozen=True, slots=True)
@@ -164,7 +162,7 @@ def interpreted(
         Evidence(f"{key} = {value}, but {place}", warns=True) for key, value, place in against_words(raw, settings)
     )
     halved = [
-        c.name for c, o in zip(raw.columns, offers, strict=True) if o.why.startswith(HALF_ONLY) and "se_" not in c.name
+        c.name for c, o in zip(raw.columns, offers, strict=True) if o.reason is Reason.HALF and "se_" not in c.name
     ]
     if cut is not None:
         shows += (Evidence(
@@ -237,17 +235,15 @@ def _no_table(raw: RawTable, offers: Sequence[Proposal]) -> InputError | None:
     if len(raw) and not any(np.any(np.isfinite(c.values)) for c in raw.columns):
         return InputError("no number", "forces over settings", file=raw.path)
     roles = {o.role for o in offers}
-    strange = [c.name for c, o in zip(raw.columns, offers, strict=True) if o.why.startswith(UNKNOWN)]
+    strange = [c.name for c, o in zip(raw.columns, offers, strict=True) if o.reason is Reason.UNKNOWN]
     if "force" in roles and not roles & {*SETTINGS} and len(strange) > FEW_STRANGE:
         return input_error(
             "tables.forces_without_settings", raw.path, names=listed([shown(n) for n in strange[:MOST_IDLE]]), first=strange[0],
         )  # fmt: skip
-    if roles & {"force", "error"} or any(
-        "or ignore" in o.why and ALLOWED_FORCES & set(o.why.split(": ")[-1][:1]) for o in offers
-    ):
+    if roles & {"force", "error"} or any(map(may_be_force, offers, raw.columns)):
         return None
     names = listed([shown(c.name) for c in raw.columns[:MOST_IDLE]])
-    if "propeller" in roles and any(o.why == PROPELLER for o in offers):
+    if "propeller" in roles and any(o.reason is Reason.PROPELLER for o in offers):
         return input_error("tables.propeller_alone", raw.path, names=names)
     over = clock(raw)
     words = vocabulary()
@@ -318,7 +314,12 @@ def _of_half(offer: Proposal, cut: Cut, frame: Axes | None) -> Proposal:
     own = {c: name for c, (name, _) in frame.columns.items()} if frame else {c: c for c in cut.cancelled}
     if given is None or given.role not in ("force", "error") or given.name not in [own[c] for c in cut.cancelled]:
         return offer
-    return Proposal("ignore", f"{HALF_ONLY}, cut at {cut.plane}; {given} of the whole is not known", certain=True)
+    return Proposal(
+        "ignore",
+        f"of half of the body, cut at {cut.plane}; {given} of the whole is not known",
+        certain=True,
+        reason=Reason.HALF,
+    )
 
 
 def _meaning_of(column: RawColumn, meanings: Mapping[str, ColumnMap]) -> ColumnMap | None:

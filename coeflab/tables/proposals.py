@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from enum import Enum
 
 import numpy as np
 
@@ -45,6 +46,16 @@ _BEHIND = re.compile(r"[(\[]([^()\[\]]*[A-Za-z][^()\[\]]*)[)\]]$")  # what may b
 _DECIMAL = re.compile(r"[-+]?\d[\d.,' ]*[.,]\d+(?:[eE][-+]?\d+)?")
 
 
+class Reason(Enum):
+    """Why a column is left open or out, where what follows hangs on it."""
+
+    UNKNOWN = "unknown"  # no known name
+    NO_NUMBERS = "no numbers"
+    REPEATED = "repeated"  # another column is the same
+    PROPELLER = "propeller"
+    HALF = "half"  # of half of the body
+
+
 @dataclass(frozen=True, slots=True)
 class Proposal:
     """What a column may be.
@@ -63,6 +74,9 @@ class Proposal:
         The unit that the file writes, where it is none that the column can have.
     assumed : bool
         The unit is a guess.
+    reason : Reason or None
+    either : str
+        The unit that the file writes, where it is of two systems.
     """
 
     text: str
@@ -71,6 +85,8 @@ class Proposal:
     note: str = ""
     unread: str = ""
     assumed: bool = False
+    reason: Reason | None = None
+    either: str = ""
 
     @property
     def meaning(self) -> ColumnMap | None:
@@ -140,10 +156,12 @@ def proposed(column: RawColumn, stated: Mapping[str, object] | None = None) -> P
             held = bool(_other_decimal_cells(column)) or bool(np.any(np.isfinite(column.values)))
             held = held and (fits(column.unit, "force") or fits(column.unit, "moment"))
             why = f"{_worded(column)}{allowed(column.unit, column.name.startswith('se_'))}"
-            return Proposal("", why) if held else Proposal("label", "text")
-        if why == UNKNOWN and (idle := _idle(column)):
-            return Proposal("ignore", f"{why}; {idle}")
-        return Proposal("", why + allowed(column.unit, column.name.startswith("se_")) * (why == UNKNOWN))
+            return Proposal("", why, reason=Reason.NO_NUMBERS) if held else Proposal("label", "text")
+        if why != UNKNOWN:
+            return Proposal("", why)
+        if idle := _idle(column):
+            return Proposal("ignore", f"{why}; {idle}", reason=Reason.UNKNOWN)
+        return Proposal("", why + allowed(column.unit, column.name.startswith("se_")), reason=Reason.UNKNOWN)
     given = read_column_map(name)
     if given.name in WORDS:
         return Proposal(name, why, certain)
@@ -203,11 +221,22 @@ def _idle(column: RawColumn) -> str:
     return ""
 
 
-def allowed(unit: str, error: bool = False) -> str:
-    """What a column, or a standard error, may be by its unit alone, to follow a text; empty where the unit says nothing."""
+def _by_unit(unit: str) -> str:
+    """What a column may be by its unit alone; empty where the unit says nothing."""
     words = " ".join(unit.split())
     plain = vocabulary().units.get(words.casefold(), words)
-    names = next((phrases for dimension, phrases in ALLOWED.items() if fits(plain, dimension)), "")
+    return next((names for dimension, names in ALLOWED.items() if fits(plain, dimension)), "")
+
+
+def may_be_force(one: Proposal, column: RawColumn) -> bool:
+    """Whether an open column without a known name, or without numbers, is a force or a moment by its unit."""
+    is_open = one.reason in (Reason.UNKNOWN, Reason.NO_NUMBERS) and not one.text
+    return is_open and not column.name.startswith("se_") and _by_unit(column.unit)[:1] in COMPONENTS
+
+
+def allowed(unit: str, error: bool = False) -> str:
+    """What a column, or a standard error, may be by its unit alone, to follow a text; empty where the unit says nothing."""
+    words, names = " ".join(unit.split()), _by_unit(unit)
     if error and names[:1] in COMPONENTS:
         names = ", ".join(f"se_{name}" for name in names.split(", "))
     return f"; {words}: {names}, or ignore" if names else ""
@@ -267,7 +296,7 @@ def _with_unit(column: RawColumn, meaning: ColumnMap, why: str, certain: bool, b
         if column.name.strip().upper() in ("X", "Y", "Z") and fits(unit, "length"):
             return Proposal("ignore", f"[{unit}] is a length: a position, no force")
         if any(either_unit(unit, meaning.dimension)):
-            return Proposal(f"{name} [{OPEN}]", f"{why}; {unit}: {EITHER}")
+            return Proposal(f"{name} [{OPEN}]", f"{why}; {unit}: {EITHER}", either=unit)
         return _unread(name, meaning, column.unit, why)
     if whole is not None:
         by_both = why.replace("its name", "its name and unit", 1)

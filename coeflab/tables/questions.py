@@ -157,8 +157,8 @@ def _of_coefficients(raw: RawTable, offers: Sequence[Proposal], settings: Settin
     if any(f"L={OPEN}" in text for text in texts):
         yield _of_lever(raw, settings)
     if any(map(without_unit, offers)):
-        both = sorted({one.why.rpartition("; ")[2] for one in offers if one.why.endswith(EITHER)})
-        yield _asked(UNITS_OF, both="".join(f"{each}; " for each in both))
+        both = sorted({one.either for one in offers if one.either})
+        yield _asked(UNITS_OF, both="".join(f"{unit}: {EITHER}; " for unit in both))
 
 
 def _of_lever(raw: RawTable, settings: Settings) -> Question:

@@ -180,6 +180,8 @@ class Run:
     ended : Ended
     why : str
         What shows it, with file and line; empty for a whole run.
+    cut : bool
+        That its last line is not whole shows it, and nothing else: broken off, or still running.
     length : float
         Of the body, m: the arm that makes a scale of moments of a force; 0 where nobody says.
     is_final : bool
@@ -195,6 +197,7 @@ class Run:
     why: str = ""
     length: float = 0.0
     is_final: bool = False
+    cut: bool = False
 
     @classmethod
     def empty(cls, path: Path, why: str, files: Sequence[Path] = ()) -> Run:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -13,27 +13,21 @@ from coeflab.core.axes import angle_sign
 from coeflab.core.errors import InputError, shown
 from coeflab.core.files import readable
 from coeflab.core.text.bounded import stream_of
-from coeflab.core.text.delimited import read_cells
+from coeflab.core.text.delimited import Cells, read_cells
 from coeflab.core.text.model_kinds import model_kind_of
 from coeflab.core.texts import input_error
 from coeflab.core.wording import Verbatim
-from coeflab.tables.campaign import FILE, read_campaign
+from coeflab.tables.campaign import FILE, Campaign, TableDeclaration, read_campaign
 from coeflab.tables.conditions import BETWEEN
 from coeflab.tables.dialect import is_of_openfoam
 from coeflab.tables.evidence import evidence
-from coeflab.tables.force_table import STUDIES
+from coeflab.tables.force_table import STUDIES, ForceTable
 from coeflab.tables.importers import IMPORTERS, Importer, PlannedTable
-from coeflab.tables.mapping import assigned, declared_mapping, mapped_table
+from coeflab.tables.input_uncertainty import InputUncertainty
+from coeflab.tables.mapping import Assigned, assigned, declared_mapping, mapped_table
+from coeflab.tables.raw_table import RawTable
 from coeflab.tables.runs import find_runs
 from coeflab.tables.transposed import upright
-
-if TYPE_CHECKING:
-    from coeflab.core.text.delimited import Cells
-    from coeflab.tables.campaign import Campaign, TableDeclaration
-    from coeflab.tables.force_table import ForceTable
-    from coeflab.tables.input_uncertainty import InputUncertainty
-    from coeflab.tables.mapping import Assigned
-    from coeflab.tables.raw_table import RawTable
 
 Progress = Callable[[str], None]
 GENERAL = "table"  # any delimited text: those of one tool come first

@@ -25,8 +25,6 @@ from coeflab.tables.wind_axes import in_body_axes
 BLANK, MARKED = "blank in the source", 'marked "uncertain" in the source'
 SAME_DENSITY = 1e-3  # relative, as runs of one table may differ
 ONE_AXIS = 1e-9  # of the largest rate: smaller ones are rounding
-TAKEN_OUT = "inertia of the model subtracted"
-HALF = "half model"
 WITHOUT_BALANCE = ("cfd", "synthetic", "estimate")  # kinds of tables whose forces no balance read
 
 
@@ -69,16 +67,19 @@ def force_table(columns: Columns, campaign: Campaign, table: TableDeclaration) -
     half, place = (
         (campaign.half_model, "campaign.toml") if table.half_model is None else (table.half_model, "its table")
     )
+    halved = ""
     if half is not None:
         done = f"{', '.join(c.doubled)} doubled" if (c := cut_of(half)) else "nothing doubled"
-        notes.append(f"{HALF}{f' ({half})' if isinstance(half, str) else ''}: {done}, by half_model of {place}")
+        halved = f"half model{f' ({half})' if isinstance(half, str) else ''}: {done}, by half_model of {place}"
+        notes.append(halved)
     if (cut := cut_of(half)) is not None:
         _require_symmetry(columns, cut, forces, motion)
         forces, errors = ({c: 2.0 * v for c, v in x.items()} for x in (forces, errors))
     turns = any(np.any(motion[m] != 0.0) for m in ANGULAR)
-    if turns and table.contains_inertia and campaign.inertia is not None:
+    subtracted = turns and bool(table.contains_inertia) and campaign.inertia is not None
+    if subtracted and campaign.inertia is not None:
         forces = _without_inertia(campaign, campaign.inertia, point, forces, motion)
-        notes.append(f"{TAKEN_OUT} (m = {campaign.inertia.mass:g} kg)")
+        notes.append(f"inertia of the model subtracted (m = {campaign.inertia.mass:g} kg)")
     result = ForceTable(
         name=f"{campaign.name}/{table.file}",
         campaign=campaign.name,
@@ -111,6 +112,8 @@ def force_table(columns: Columns, campaign: Campaign, table: TableDeclaration) -
         density=columns.density,
         propeller=columns.propeller,
         model_mass=None if campaign.inertia is None else campaign.inertia.mass,
+        inertia_subtracted=subtracted,
+        halved=halved,
         arm_point=table.arm_point,
         symmetry=campaign.symmetry,
         by_symmetry=f"{campaign.name}/{table.by_symmetry}" if table.by_symmetry else "",

@@ -16,13 +16,12 @@ from coeflab.core.missed import suggesting
 from coeflab.core.texts import input_error
 from coeflab.core.types import in_angles
 from coeflab.tank import tow as tank_room
+from coeflab.tank.collected import Collected, collected
 from coeflab.tank.tank import Tank
 from coeflab.tank.towed_body import TowedBody
 
 if TYPE_CHECKING:
     import pandas as pd
-
-    from coeflab.tank.tow import Collected
 
 
 @suggesting
@@ -88,7 +87,7 @@ class Tow:
         """
         laid = tank_room.laid_out(self.tank, self.towed, Path(folder), self.matrix)
         tank_room.carried_out(laid, cores, lambda: None)
-        return tank_room.collected(laid)
+        return collected(laid)
 
 
 def tow(body: str | Path | plain.Body, matrix: str | Path | None = None, *, solver: str = "", runner: str = "") -> Tow:

@@ -19,14 +19,12 @@ from coeflab.law.coefficient import Status
 from coeflab.law.symbols import ANGULAR, LINEAR, primed
 from coeflab.report.printable import shortened
 from coeflab.study.checks.symmetry import biases
-from coeflab.study.towed import NO_RESULT
+from coeflab.study.towed import NO_RESULT, TowedRow
 from coeflab.tables.conditions import named
-from coeflab.tank.jobs import JobState
+from coeflab.tank.jobs import Job, JobState
 
 if TYPE_CHECKING:
     from coeflab.study.study import Study
-    from coeflab.study.towed import TowedRow
-    from coeflab.tank.jobs import Job
     from coeflab.tank.states import JobRow
     from coeflab.tank.tank import Tank
     from coeflab.tank.test_matrix import TowCondition

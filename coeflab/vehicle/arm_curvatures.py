@@ -8,16 +8,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 from coeflab.core.finding import Finding
 from coeflab.fits.tied_law import ONE_RATIO
-from coeflab.law.added_mass import potential_part
-
-if TYPE_CHECKING:
-    from coeflab.law.added_mass import AddedMass
-    from coeflab.law.coefficient import Coefficient
-    from coeflab.law.scaling import Scaling
+from coeflab.law.added_mass import AddedMass, potential_part
+from coeflab.law.coefficient import Coefficient
+from coeflab.law.scaling import Scaling
 
 
 def less_ideal_products(

@@ -14,8 +14,8 @@ from coeflab.core.finding import Finding, Severity
 from coeflab.core.texts import input_error, text_of
 from coeflab.core.version import VERSION
 from coeflab.fits.glide_polar import with_munk
-from coeflab.law.added_mass import potential_part
-from coeflab.law.coefficient import FILED, Coefficient
+from coeflab.law.added_mass import AddedMass, potential_part
+from coeflab.law.coefficient import FILED, Coefficient, CoefficientSet
 from coeflab.law.rigid_body import MassProperties
 from coeflab.law.symbols import derivative, primed
 from coeflab.vehicle.arm_curvatures import less_ideal_products
@@ -34,8 +34,6 @@ if TYPE_CHECKING:
     from coeflab.bodies.triangulation import Triangulation
     from coeflab.core.provenance import InputFile
     from coeflab.fits.results.fit_result import FitResult
-    from coeflab.law.added_mass import AddedMass
-    from coeflab.law.coefficient import CoefficientSet
     from coeflab.law.scaling import Conditions, Scaling
     from coeflab.tables.force_table import ForceTable
     from coeflab.vehicle.published_values import Reference

@@ -15,8 +15,8 @@ import numpy as np
 from coeflab.core.errors import InputError
 from coeflab.core.finding import Finding, Severity
 from coeflab.core.table import Check, as_check
-from coeflab.core.types import dataclass, locking
-from coeflab.law.force_law import CONTROLS
+from coeflab.core.types import Array, dataclass, locking
+from coeflab.law.force_law import CONTROLS, ForceTerm
 from coeflab.law.rigid_body import ideal_quadratics
 from coeflab.law.symbols import COMPONENTS, LINEAR, MOTIONS, primed
 from coeflab.vehicle.force_law import motion_law, stated_terms
@@ -24,8 +24,6 @@ from coeflab.vehicle.inertia import water_inertia
 from coeflab.vehicle.second_order import products_once
 
 if TYPE_CHECKING:
-    from coeflab.core.types import Array
-    from coeflab.law.force_law import ForceTerm
     from coeflab.vehicle.parameter_file import ParameterFile
 
 NAME = "plausibility"

@@ -16,22 +16,19 @@ import numpy as np
 
 from coeflab.core.errors import InputError
 from coeflab.core.finding import Finding, Severity
-from coeflab.core.types import dataclass
+from coeflab.core.types import Array, dataclass
 from coeflab.law.force_law import AHEAD, ForceLaw, ForceTerm, Reading
 from coeflab.law.rigid_body import ideal_quadratics
 from coeflab.law.scaling import powers_of
 from coeflab.law.symbols import ANGULAR, COMPONENTS, CONTROLS, LINEAR, MOTIONS, derivative
 from coeflab.law.terms import Factor, Term, parse_suffix
 from coeflab.vehicle.inertia import water_inertia
-from coeflab.vehicle.law_at_points import law_at_points
-from coeflab.vehicle.sources import acts_in, moved_by, name_of, steered, still_known, summed
+from coeflab.vehicle.law_at_points import LawAtPoints, law_at_points
+from coeflab.vehicle.sources import Sources, acts_in, moved_by, name_of, steered, still_known, summed
 
 if TYPE_CHECKING:
-    from coeflab.core.types import Array
-    from coeflab.vehicle.law_at_points import LawAtPoints
     from coeflab.vehicle.parameter_file import ParameterFile
     from coeflab.vehicle.parameter_model import ParameterModel
-    from coeflab.vehicle.sources import Sources
 
 EDGE = "law.edge"  # the one finding of a law that is not about what it leaves out
 LONG = 9  # a table is more than slopes

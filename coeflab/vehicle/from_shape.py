@@ -14,7 +14,7 @@ from coeflab.bodies.mass_model import at_rest, rest_words
 from coeflab.bodies.shape import Parts, Revolution
 from coeflab.core.errors import InputError, shown
 from coeflab.core.texts import input_error, text_of
-from coeflab.core.types import dataclass, locked
+from coeflab.core.types import Array, dataclass, locked
 from coeflab.core.wording import listed
 from coeflab.fits.results.fit_result import FitResult
 from coeflab.law.rigid_body import MassProperties, about_another, inertia_doubt
@@ -25,7 +25,6 @@ if TYPE_CHECKING:
     from coeflab.bodies.body import Body, Configuration
     from coeflab.bodies.pieces import Control
     from coeflab.bodies.thrusters import Thruster
-    from coeflab.core.types import Array
     from coeflab.estimates import Estimates
     from coeflab.law.scaling import Conditions
     from coeflab.vehicle.parameter_file import ParameterFile

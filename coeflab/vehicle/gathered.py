@@ -12,13 +12,11 @@ from numpy.typing import NDArray
 from coeflab.core.errors import ScalingMismatchError, shown
 from coeflab.core.texts import input_error
 from coeflab.core.types import dataclass
-from coeflab.fits.results.fit_result import covariance_of
-from coeflab.law.coefficient import Coefficient, Status
+from coeflab.fits.results.fit_result import FitResult, covariance_of
+from coeflab.law.coefficient import Coefficient, CoefficientSet, Status
 from coeflab.law.symbols import derivative, primed
 
 if TYPE_CHECKING:
-    from coeflab.fits.results.fit_result import FitResult
-    from coeflab.law.coefficient import CoefficientSet
     from coeflab.vehicle.published_values import Reference
 
 

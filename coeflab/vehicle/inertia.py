@@ -12,7 +12,7 @@ import numpy as np
 
 from coeflab.core.errors import InputError, shown
 from coeflab.core.texts import input_error
-from coeflab.core.types import dataclass, locking
+from coeflab.core.types import Array, dataclass, locking
 from coeflab.law.added_mass import AddedMass
 from coeflab.law.definiteness import ROUNDING, definiteness
 from coeflab.law.rigid_body import rigid_body_inertia
@@ -20,7 +20,6 @@ from coeflab.law.symbols import COMPONENTS, MOTIONS, derivative, primed
 from coeflab.law.transforms import skew
 
 if TYPE_CHECKING:
-    from coeflab.core.types import Array
     from coeflab.vehicle.parameter_file import ParameterFile
 
 SAME = 1e-9

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -17,6 +17,7 @@ from coeflab.core.wording import listed
 from coeflab.fits.joint.moving import LEFT_OUT, left_out
 from coeflab.law.added_mass import potential_part
 from coeflab.law.coefficient import Coefficient, CoefficientSet, Status, moved_together
+from coeflab.law.scaling import Scaling
 from coeflab.law.symbols import derivative, primed
 from coeflab.vehicle.comparison import coefficient_set
 from coeflab.vehicle.force_law import force_at_edges, full_force, points_of, spoken
@@ -26,9 +27,6 @@ from coeflab.vehicle.parameter_file import ParameterFile
 from coeflab.vehicle.parameter_parts import ParameterCovariance
 from coeflab.vehicle.schema_versions import SCHEMA_VERSION
 from coeflab.vehicle.sources import Moved, acts_in
-
-if TYPE_CHECKING:
-    from coeflab.law.scaling import Scaling
 
 SAME_LENGTH, ONE_BODY = 1e-3, 0.1  # of the length: one length; two lengths of one body, such as LBP and LOA
 SCALED_UNSAID = "parameter_file.scaled"  # SI values of a person who did not say what they do at other speeds

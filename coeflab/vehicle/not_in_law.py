@@ -3,21 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.special import stdtrit
 
 from coeflab.core.finding import Finding, Severity
+from coeflab.core.types import Array
 from coeflab.fits.rows.sweeps import FEWEST_SETTINGS
 from coeflab.fits.statistics.diagnostics import CERTAIN, SHARE, levels
 from coeflab.law.symbols import COMPONENTS, CONTROLS, FORCES, MOTIONS, PORT_STARBOARD, primed
-from coeflab.tables.force_table import AT_REST
+from coeflab.tables.force_table import AT_REST, ForceTable
 from coeflab.vehicle.law_at_points import SMALL
-
-if TYPE_CHECKING:
-    from coeflab.core.types import Array
-    from coeflab.tables.force_table import ForceTable
 
 NOT_IN_LAW = "law.not_in_law"
 

@@ -111,7 +111,7 @@ def own_number(typed: str) -> OwnNumber:
     try:
         d = derivative(symbol)
     except InputError as why:
-        raise InputError(why.found, why.expected, column="--set", advice=why.advice) from None
+        raise why.at(column="--set") from None
     over_speed = _OVER_SPEED.findall(rest)
     match = _TYPED.fullmatch(_OVER_SPEED.sub("", rest))
     if match is None or len(over_speed) > 1:
@@ -340,7 +340,7 @@ def typed_file(
     try:
         datum = Datum.named(datum_name(about.strip()))
     except InputError as why:
-        raise InputError(why.found, why.expected, column="--about", advice=why.advice) from None
+        raise why.at(column="--about") from None
     result = imported_file(name, body or name, scaling, conditions, np.zeros(3), datum, known, weighed, afloat)
     for found in (words(f) for f in far_centre(result) if (f.statistic or 0.0) > ANOTHER_UNIT * (f.threshold or 0.0)):
         raise InputError(f"{shown(cg)}. {found.statement.rstrip('.')}", found.rule, column="--cg", advice=found.advice)
@@ -420,7 +420,5 @@ def typed_thruster(text: str, conditions: Conditions) -> ParameterThruster:
     try:
         stated = validated(ThrusterKeys, keys)
     except InputError as why:
-        raise InputError(
-            why.found, why.expected, column=f"--thruster {why.column or ''}".strip(), advice=why.advice
-        ) from None
+        raise why.at(column=f"--thruster {why.column or ''}".strip()) from None
     return parameter_thruster(stated.built, np.zeros(3), conditions)

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
 from coeflab.core.finding import Severity
@@ -15,7 +13,8 @@ from coeflab.vehicle.contradictions import twice_findings
 from coeflab.vehicle.expected_signs import sign_findings
 from coeflab.vehicle.force_law import force_law, force_of_tables, points_of, spoken
 from coeflab.vehicle.inertia import centre_of_gravity
-from coeflab.vehicle.law_at_points import missed_for_certain
+from coeflab.vehicle.law_at_points import LawAtPoints, missed_for_certain
+from coeflab.vehicle.parameter_file import ParameterFile
 from coeflab.vehicle.plausible_added_mass import (
     CHANGED,
     LAW,
@@ -28,10 +27,6 @@ from coeflab.vehicle.plausible_added_mass import (
 from coeflab.vehicle.plausible_damping import damping_findings
 from coeflab.vehicle.sizes import size_findings
 from coeflab.vehicle.sources import acts_in
-
-if TYPE_CHECKING:
-    from coeflab.vehicle.parameter_file import ParameterFile
-
 
 SMALL = 1e-4  # of the speed: a slope at zero, by central difference
 ALONG = 0.9  # of a thruster's direction: within 26 deg of x
@@ -82,6 +77,11 @@ def _astern(p: ParameterFile) -> list[Check]:
 
 
 def law_findings(parameters: ParameterFile) -> tuple[Check, ...]:
+    """As `findings_at_points`."""
+    return tuple(found for _, found in findings_at_points(parameters))
+
+
+def findings_at_points(parameters: ParameterFile) -> tuple[tuple[LawAtPoints, Check], ...]:
     """The law, as the file has it, against the measured points in the file, by component and table.
 
     A point missed where the law is said to hold fails; points outside of that range are a warning that names them. So does a
@@ -100,7 +100,7 @@ def law_findings(parameters: ParameterFile) -> tuple[Check, ...]:
                 f"rms {100.0 * x.rms / largest:.3g} %, worst {100.0 * x.worst / largest:.3g} %" for x in (f, before)
             )
             means = "A coefficient was changed after the file was written: this is not the law that was compared."
-            out.append(Check(LAW, f"{f.component} {f.table}", Severity.FAIL, now, f"{then}, as stated", means))
+            out.append((f, Check(LAW, f"{f.component} {f.table}", Severity.FAIL, now, f"{then}, as stated", means)))
         words = f"worst {100.0 * f.worst / largest:.2g} %, rms {100.0 * f.rms / largest:.2g} %, worst at {f.worst_at or 'no point'}"
         if f.beyond and not f.small and not f.missed:
             words = (
@@ -131,7 +131,7 @@ def law_findings(parameters: ParameterFile) -> tuple[Check, ...]:
             comment = (
                 X_APART if f.component == "X" else "The law ends before these points, and so do exports and motions."
             )
-        out.append(Check(LAW, f"{f.component} {f.table}", severity, words, rule, comment))
+        out.append((f, Check(LAW, f"{f.component} {f.table}", severity, words, rule, comment)))
     return tuple(out)
 
 

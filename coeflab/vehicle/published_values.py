@@ -224,7 +224,7 @@ def _values(printed: Mapping[str, str], table: str, known: tuple[str, ...] = ())
         try:
             out.append(_value(symbol, text, known))
         except InputError as why:
-            raise InputError(why.found, why.expected, column=f"{table}.{symbol}", advice=why.advice) from None
+            raise why.at(column=f"{table}.{symbol}") from None
     return tuple(out)
 
 

@@ -8,11 +8,11 @@ from __future__ import annotations
 
 import numpy as np
 
+from coeflab.core.axes import FLU
 from coeflab.core.types import Array, dataclass, locking
 from coeflab.law.force_law import ForceLaw, ForceTerm
 from coeflab.law.symbols import COMPONENTS, MOTIONS
 
-FLU = np.array([1.0, -1.0, -1.0, 1.0, -1.0, -1.0])
 ROUNDING = 1e-12
 SURGE = 0
 ACROSS = (1, 2)

@@ -12,6 +12,7 @@ import pytest
 
 from coeflab.core.files import shipped
 from coeflab.tank import tow as room
+from coeflab.tank.collected import collected
 from coeflab.tank.folder import CAMPAIGN
 from coeflab.tank.jobs import JobState, progress
 from coeflab.tank.tow import Tow
@@ -57,7 +58,7 @@ def opened(folder: Path, runner: str) -> Tow:
 
 def rows(tow: Tow) -> dict[str, dict[str, str]]:
     """Of the drift table, by condition and column."""
-    room.collected(tow, fitted=False)
+    collected(tow, fitted=False)
     lines = (tow.folder / CAMPAIGN / "drift.csv").read_text().splitlines()
     table = [line.split(",") for line in lines if not line.startswith("#")]
     return {row[0]: dict(zip(table[0], row)) for row in table[1:]}

@@ -16,6 +16,7 @@ from coeflab.report.acceptance import Acceptance
 from coeflab.report.first_page import answer
 from coeflab.tables.reading import read_tables, table_at
 from coeflab.tank import tow
+from coeflab.tank.collected import collected
 
 FOOT = 0.3048
 
@@ -85,7 +86,7 @@ def test_a_tow_by_estimates_from_table_to_report(tmp_path: Path) -> None:
     shutil.copytree(Path(shipped("geometry")) / "tow_spheroid", tmp_path / "body")
     made = tow.laid_out(*tow.read(tmp_path / "body", None, "estimate"), tmp_path / "tow")
     assert made.jobs == ()
-    collected = tow.collected(made)
+    found = collected(made)
     campaign = (tmp_path / "tow" / "campaign" / "campaign.toml").read_text()
     assert 'kind = "estimate"' in campaign
     assert "cfd" not in campaign
@@ -93,8 +94,8 @@ def test_a_tow_by_estimates_from_table_to_report(tmp_path: Path) -> None:
     known = made.solver.known
     assert known is not None
     among = known(made.tank, made.body)
-    for row in collected.six:
+    for row in found.six:
         assert row.coefficient.status is Status.ESTIMATE
         assert row.value == pytest.approx(among[row.symbol].value, rel=0.02, abs=1e-5)
         assert row.u95 == among[row.symbol].u95
-    assert any(f.name == "report.html" for f in collected.files)
+    assert any(f.name == "report.html" for f in found.files)

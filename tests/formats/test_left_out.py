@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from coeflab.core.axes import FLU
 from coeflab.core.errors import InputError
 from coeflab.core.finding import Finding, Severity
 from coeflab.core.text.xml import parse_xml
@@ -14,7 +15,6 @@ from coeflab.formats.gazebo.law import read_gz_link
 from coeflab.formats.model_files import read_model_file
 from coeflab.vehicle.force_law import force_law
 from coeflab.vehicle.parameter_file import ParameterFile, read_parameter_file
-from coeflab.vehicle.second_order import FLU
 
 DATA = Path(__file__).parent / "data"
 VESSEL = """function xdot = vessel(x)

@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from coeflab.core.axes import FLU
 from coeflab.core.errors import InputError
 from coeflab.core.finding import Severity
 from coeflab.core.text.xml import read_xml
@@ -19,7 +20,6 @@ from coeflab.formats.model_files import read_model_file
 from coeflab.study.study import Study
 from coeflab.vehicle.force_law import force_law
 from coeflab.vehicle.parameter_file import ParameterFile, read_parameter_file
-from coeflab.vehicle.second_order import FLU
 from tests.formats import files as made
 from tests.formats import of_second_order as second
 

@@ -8,7 +8,8 @@ from dataclasses import replace
 import pytest
 
 from coeflab.core.files import shipped
-from coeflab.fits.uncertainty.budget import Budget, BudgetPart
+from coeflab.fits.uncertainty.budget import Budget, BudgetPart, OpenGrid
+from coeflab.fits.uncertainty.grid_convergence import Convergence
 from coeflab.report import acceptance, first_page_notes
 from coeflab.report.acceptance import Basis, headline_of_study, held_of_study
 from coeflab.report.tables.budgets import predictions
@@ -24,26 +25,37 @@ SAME_WATER = (14e6, 14e6)
 
 
 def sided(
-    kind: str, value: float, u95: float, symbol: str = "Yv", open_parts: tuple[str, ...] = (), campaign: str = ""
+    kind: str, value: float, u95: float, symbol: str = "Yv", grid: OpenGrid | None = None, campaign: str = ""
 ) -> Budget:
     return Budget(
-        symbol, campaign or kind, "hull", "t", kind, value, (BudgetPart("random", u95, None),), u95, (), None, None, None, open_parts,
+        symbol, campaign or kind, "hull", "t", kind, value, (BudgetPart("random", u95, None),), u95, (), None, None, None,
+        ("turbulence model",) if grid is None else (grid.name,), open_grid=grid,
     )  # fmt: skip
 
 
 def compared(
-    value: float, u95: float, *, symbol: str = "Yv", open_parts: tuple[str, ...] = (), by: str = "cfd"
+    value: float, u95: float, *, symbol: str = "Yv", grid: OpenGrid | None = None, by: str = "cfd"
 ) -> Validation:
-    s = sided("cfd", value, 0.001, symbol, open_parts, by)
+    s = sided("cfd", value, 0.001, symbol, grid, by)
     return validation(s, sided("experiment", -0.028, u95, symbol), reynolds=SAME_WATER)
 
 
 @pytest.mark.parametrize(
-    ("left_out", "why"),
-    [("grid", "no grid study"), ("grid (study divergent)", "grid study divergent"), ("turbulence model", "")],
-)
-def test_without_the_error_of_the_grid_there_is_no_verdict(left_out: str, why: str) -> None:
-    v = compared(-0.029, 0.002, open_parts=(left_out,))
+    ("grid", "left_out", "why", "reason"),
+    [
+        (OpenGrid(None), "grid", "no grid study", "no grid study"),
+        (OpenGrid(Convergence.DIVERGENT), "grid (study divergent)", "grid study divergent", "grid study diverged"),
+        (OpenGrid(Convergence.NOISE, bound=True), "grid (study within the iteration noise: a bound only)",
+         "grid study within the iteration noise: a bound only", "no error from the grid study: within the iteration noise"),
+        (None, "turbulence model", "", ""),
+    ],
+)  # fmt: skip
+def test_without_the_error_of_the_grid_there_is_no_verdict(
+    grid: OpenGrid | None, left_out: str, why: str, reason: str
+) -> None:
+    v = compared(-0.029, 0.002, grid=grid)
+    assert v.lacking == (left_out,)
+    assert v.reasons == ((reason,) if reason else ())
     assert v.why_none == why
     assert v.within is (None if why else True)
     assert v.u_validation is not None
@@ -90,7 +102,7 @@ def test_a_measured_number_counts_once(
     first = compared(-0.029, 0.006)
     second = compared(-0.027, 0.006, by="tow")
     missed = compared(-0.040, 0.006, by="tow")
-    open_one = compared(-0.029, 0.006, symbol="Nv", open_parts=("grid",))
+    open_one = compared(-0.029, 0.006, symbol="Nv", grid=OpenGrid(None))
     study = replace(bodies[0], comparisons=(), references=())
     for found, good in (((first, second, open_one), 1), ((first, missed, open_one), 0)):
         for module in (acceptance, first_page_notes):

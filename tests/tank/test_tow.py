@@ -23,13 +23,14 @@ from coeflab.study.towed import SECANT, TowedRow
 from coeflab.tables.force_table import Exclusion
 from coeflab.tank import tables
 from coeflab.tank import tow as room
+from coeflab.tank.collected import Collected, collected
 from coeflab.tank.commands.tow import _fates
 from coeflab.tank.folder import CAMPAIGN, PLAN, has_begun, read_plan
 from coeflab.tank.jobs import EARLIER, Job, JobState, only_one, outstanding
 from coeflab.tank.states import states_of
 from coeflab.tank.tank import Tank
 from coeflab.tank.tank_file import read_tank
-from coeflab.tank.tow import Collected, Tow
+from coeflab.tank.tow import Tow
 from coeflab.tank.towed_body import TowedBody
 from tests.planted_tank import planted_here
 from tests.tank.towed_bodies import BODY_FILE, with_mirrors
@@ -74,7 +75,7 @@ def laid_out(folder: Path, matrix: Path, out: str = "x") -> Tow:
 
 def towed(tow: Tow) -> Collected:
     room.carried_out(tow, 0, lambda: None)
-    return room.collected(tow)
+    return collected(tow)
 
 
 def states(tow: Tow) -> dict[str, JobState]:
@@ -177,7 +178,7 @@ def test_a_finished_tow_is_kept_and_gives_the_same_bytes(whole: tuple[Tow, Colle
     room.carried_out(again, 0, lambda: pytest.fail("nothing is left to run"))
     with (tow.folder / "drift+6" / "history.csv").open("a") as late:  # as of a solver that was slow to stop
         late.write("161,-9,-9,-9\n")
-    room.collected(again, fitted=False)
+    collected(again, fitted=False)
     assert {p.name: p.read_bytes() for p in (tow.folder / CAMPAIGN).rglob("*") if p.is_file()} == before
 
 
@@ -190,7 +191,7 @@ def test_what_an_earlier_tow_finished_is_taken_over_with_the_same_bytes(
     runs = [job.name for job in again.jobs if job.needs]
     assert room.taken_over(again, campaign) == tuple(runs)
     room.carried_out(again, 0, lambda: pytest.fail("nothing is left to run"))
-    room.collected(again, fitted=False)
+    collected(again, fitted=False)
     for path in (p for p in campaign.rglob("*") if p.is_file()):
         assert (tmp_path / "x" / CAMPAIGN / path.relative_to(campaign)).read_bytes() == path.read_bytes(), path.name
     rows = {row.job.name: row for row in states_of(again.folder)}
@@ -309,7 +310,7 @@ def test_one_of_many_crashes_and_the_others_go_on(tmp_path: Path) -> None:
     matrix = tank_file(tmp_path, '[solver.planted]\ncrashes = ["drift+6"]\nrestless = ["yaw+0.2"]\n')
     tow = laid_out(tmp_path, matrix)
     room.carried_out(tow, 0, lambda: None)
-    made = room.collected(tow, fitted=False)
+    made = collected(tow, fitted=False)
     bad = {r.condition.name: r for r in made.runs if not r.counts}
     assert {n: r.status for n, r in bad.items()} == {"drift+6": "crashed", "yaw+0.2": "unconverged"}
     assert "planted: floating point exception" in bad["drift+6"].why
@@ -407,7 +408,7 @@ def test_an_outside_solver_fills_a_table_in(tmp_path: Path, whole: tuple[Tow, Co
         row = [name, *("" if cells.get(c) is None else repr(cells[c]) for c in head[1:])]
         filled.append(",".join(row) if name in known else line)
     path.write_text("\n".join(filled) + "\n")
-    values = {r.symbol: r.value for r in room.collected(tow).six}
+    values = {r.symbol: r.value for r in collected(tow).six}
     assert values["Yv"] == pytest.approx(-6e-3, rel=1e-2)
     assert values["Mw"] == pytest.approx(1.3e-2, rel=1e-2)
     said = (tow.folder / "campaign" / "campaign.toml").read_text()

@@ -5,9 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from coeflab.core.axes import FLU
 from coeflab.law.rigid_body import ideal_force, ideal_quadratics, momentum_quadratics
 from coeflab.vehicle.force_law import force_law
-from coeflab.vehicle.second_order import FLU, SecondOrder, products_once, second_order, slot
+from coeflab.vehicle.second_order import SecondOrder, products_once, second_order, slot
 from tests.formats import of_second_order as second
 from tests.vehicle.test_force_law import parameters
 

@@ -99,7 +99,7 @@ class File(BodyFile):
             try:
                 values_of()
             except InputError as why:
-                raise InputError(why.found, why.expected, column=key, advice=why.advice) from None
+                raise why.at(column=key) from None
 
     def positions(self, phase: arm_keys.ArmPhaseKeys) -> tuple[float, ...]:
         """Joint positions that a phase goes to, rad and m, within the joints' limits."""

@@ -240,7 +240,7 @@ def _drive(chain: Chain, phase: Phase, state: Array, begins: float, key: str) ->
         elif "end.x" in wanted:
             track = track_of_end(chain, q, np.array([wanted[f"end.{axis}"] for axis in "xyz"]), begins, ends, rates)
     except InputError as why:
-        raise InputError(why.found, why.expected, column=f"{key}.{why.column}", advice=why.advice) from None
+        raise why.at(column=f"{key}.{why.column}") from None
     torque = np.array([wanted.get(f"{joint.name}.torque", 0.0) for joint in chain.joints])
     driving = any(t.name in wanted for t in chain.thrusters)
     commands = np.array([wanted.get(t.name, 0.0) for t in chain.thrusters]) if driving else None

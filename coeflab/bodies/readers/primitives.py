@@ -192,7 +192,7 @@ class PartKeys(takes.Declaration):
         except InputError as why:
             if self.path is not None:
                 raise
-            raise InputError(why.found, why.expected, column="form", advice=why.advice) from None
+            raise why.at(column="form") from None
         turn = rotation(*self.rotation)
         centre = self.centre + turn @ middle
         return Part(self.name, form, centre, turn, None if self.fit is None else self.fit.built)

@@ -134,7 +134,7 @@ def _factor(unit: str, path: Path) -> float:
     try:
         return factor(unit, "length")
     except UnitsError as why:
-        raise UnitsError(why.found, why.expected, file=path, column="--unit", advice=why.advice) from None
+        raise why.at(path, column="--unit") from None
 
 
 def _bare(path: Path, unit: float, axes: Axes, repair: bool, fill: bool, sheets: bool) -> Body:

@@ -4,18 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from coeflab.core.finding import Finding, Severity
+from coeflab.core.types import Array
 from coeflab.fits.results.fit_result import FitResult, Shared, covariance_of
 from coeflab.law.coefficient import MovedSets, moved_together
+from coeflab.law.scaling import Scaling
 from coeflab.law.symbols import primed
-
-if TYPE_CHECKING:
-    from coeflab.core.types import Array
-    from coeflab.law.scaling import Scaling
 
 LEFT_OUT = "move.left_out"
 

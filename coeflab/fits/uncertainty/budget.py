@@ -24,6 +24,7 @@ from coeflab.tables.force_table import STUDIES
 if TYPE_CHECKING:
     from coeflab.core.types import Array
     from coeflab.fits.results.fit_result import FitResult, Sweep
+    from coeflab.fits.uncertainty.grid_convergence import Convergence
     from coeflab.fits.uncertainty.grid_studies import GridStudy, VariantStudy
     from coeflab.fits.uncertainty.propagation import Propagated
     from coeflab.law.coefficient import Coefficient, CoefficientSet
@@ -49,7 +50,6 @@ REMAINS = {
 }  # what is open without a study, and with one
 COUPLED = "error of the drift angle in the rate sweep"
 NOT_OF_A_COMPUTATION = ("force", "moment")
-BOUND_ONLY = ": a bound only"  # of the grid, where the study does not converge: U95 holds a bound by the range
 ITERATIONS = STUDIES["iterations"]
 
 
@@ -70,6 +70,31 @@ class BudgetPart:
     name: str
     half_width: float
     share: float | None
+
+
+@dataclass(frozen=True, slots=True)
+class OpenGrid:
+    """How a budget leaves the grid open: by a study without an order, by a bound alone, or without a study.
+
+    Attributes
+    ----------
+    study : Convergence or None
+    bound : bool
+        U95 holds a bound by the range of the study.
+    """
+
+    study: Convergence | None
+    bound: bool = False
+
+    @property
+    def name(self) -> str:
+        """As unassessed parts name it."""
+        return "grid" if self.study is None else f"grid (study {self.study}{': a bound only' * self.bound})"
+
+    @property
+    def reason(self) -> str:
+        """Why no verdict holds."""
+        return "no grid study" if self.study is None else f"grid study {self.study}{': a bound only' * self.bound}"
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -99,6 +124,8 @@ class Budget:
         Of the domain, the turbulence model and the iterations, the gravest of each.
     stated : str
         What the source of its tables states of its uncertainty, in its own words.
+    open_grid : OpenGrid or None
+        How a computed value leaves the grid open; ``unassessed`` names it.
     """
 
     symbol: str
@@ -116,6 +143,7 @@ class Budget:
     unassessed: tuple[str, ...]
     studies: tuple[VariantStudy, ...] = ()
     stated: str = ""
+    open_grid: OpenGrid | None = None
 
     def __repr__(self) -> str:
         largest = max(self.parts, key=lambda p: p.half_width, default=None)
@@ -231,13 +259,14 @@ def budget_of(
     found = {name: part for name, part in fitted.items() if part is not None}
     lacks = [name for name, part in fitted.items() if part is None]
     study = study or grid_study_of(tables, component)
-    relative = None if study is None else study.convergence.relative
+    relative, open_grid = None if study is None else study.convergence.relative, None
     if relative is not None and study is not None:
         found["grid"] = relative * abs(value)
         if not study.convergence.convergence.converges:
-            lacks.append(f"grid (study {study.convergence.convergence}{BOUND_ONLY})")
+            open_grid = OpenGrid(study.convergence.convergence, bound=True)
     elif "cfd" in kinds:
-        lacks.append("grid" if study is None else f"grid (study {study.convergence.convergence})")
+        open_grid = OpenGrid(None if study is None else study.convergence.convergence)
+    lacks += [] if open_grid is None else [open_grid.name]
     studies = tuple(variant_studies_of(tables, component) if variants is None else variants)
     found.update({s.name: s.relative * abs(value) for s in studies if s.name != MODEL})
     found.update({p.name.replace("_", " "): p.linear for p in inputs if p.linear > 0.0})
@@ -250,7 +279,7 @@ def budget_of(
     parts = tuple(BudgetPart(n, h, (h / u95) ** 2 if u95 else None) for n, h in found.items())
     return Budget(
         c.symbol, c.campaign or "", c.body, c.table or "", kinds[0], value, parts, u95, inputs, total, study, window, unassessed,
-        studies, "; ".join(dict.fromkeys(filter(None, (t.source.stated_uncertainty for t in tables)))),
+        studies, "; ".join(dict.fromkeys(filter(None, (t.source.stated_uncertainty for t in tables)))), open_grid,
     )  # fmt: skip
 
 

@@ -15,15 +15,11 @@ from __future__ import annotations
 
 from dataclasses import replace
 from enum import StrEnum
-from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.optimize import brentq
 
-from coeflab.core.types import dataclass
-
-if TYPE_CHECKING:
-    from coeflab.core.types import Array
+from coeflab.core.types import Array, dataclass
 
 LOWEST_ORDER, ORDER_SLACK, STEEPEST = 0.5, 0.1, 60.0
 WITHIN, OUTSIDE = 1.25, 3.0

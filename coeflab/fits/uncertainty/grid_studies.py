@@ -2,19 +2,13 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
 from coeflab.core.types import dataclass
-from coeflab.fits.uncertainty.grid_convergence import cell_sizes, grid_convergence
+from coeflab.fits.uncertainty.grid_convergence import GridConvergence, cell_sizes, grid_convergence
 from coeflab.fits.uncertainty.several_grids import fitted_convergence
 from coeflab.law.symbols import LINEAR, MOTIONS
-from coeflab.tables.force_table import STUDIES
-
-if TYPE_CHECKING:
-    from coeflab.fits.uncertainty.grid_convergence import GridConvergence
-    from coeflab.tables.force_table import ForceTable
+from coeflab.tables.force_table import STUDIES, ForceTable
 
 MANY = 3
 WITHOUT_PLATEAU = {"too short", "drifting", "unconverged"}

@@ -13,16 +13,14 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from coeflab.fits.uncertainty.propagation import STEP, normal_draws, summary_of
+from coeflab.fits.uncertainty.propagation import STEP, Propagated, normal_draws, summary_of
 from coeflab.law.coefficient import transfer_matrix
 from coeflab.law.symbols import ANGULAR, MOMENTS
-from coeflab.tables.input_uncertainty import NAMES
+from coeflab.tables.input_uncertainty import NAMES, InputUncertainty
 
 if TYPE_CHECKING:
     from coeflab.core.types import Array
     from coeflab.fits.results.fit_result import FitResult, Sweep
-    from coeflab.fits.uncertainty.propagation import Propagated
-    from coeflab.tables.input_uncertainty import InputUncertainty
 
 
 ROUNDING = 1e-9

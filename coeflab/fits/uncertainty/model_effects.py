@@ -3,22 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from coeflab.core.errors import InputError
-from coeflab.core.types import dataclass, locking
+from coeflab.core.types import Array, dataclass, locking
 from coeflab.fits.results.fit_result import FitResult
 from coeflab.fits.uncertainty.moved_tables import SET_ANGLES, UncertainInput, moved, uncertain_inputs
-from coeflab.fits.uncertainty.propagation import STEP, normal_draws, summary_of
+from coeflab.fits.uncertainty.propagation import STEP, Propagated, normal_draws, summary_of
 from coeflab.law.scaling import Scaling
 from coeflab.tables.force_table import ForceTable
-
-if TYPE_CHECKING:
-    from coeflab.core.types import Array
-    from coeflab.fits.uncertainty.propagation import Propagated
-
 
 Refit = Callable[[Sequence[ForceTable], Scaling], FitResult]
 ROUNDING = 1e-9

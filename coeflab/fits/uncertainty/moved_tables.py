@@ -8,21 +8,15 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-from coeflab.core.types import dataclass
+from coeflab.core.types import Array, dataclass
 from coeflab.law.scaling import Scaling
 from coeflab.law.symbols import ANGULAR, FORCES, LINEAR, MOMENTS
 from coeflab.law.transforms import incidence
 from coeflab.tables.force_table import ForceTable
-from coeflab.tables.input_uncertainty import NAMES
-
-if TYPE_CHECKING:
-    from coeflab.core.types import Array
-    from coeflab.tables.input_uncertainty import InputUncertainty
-
+from coeflab.tables.input_uncertainty import NAMES, InputUncertainty
 
 SET_ANGLES = {"alpha": "alpha", "w": "alpha", "beta": "beta", "v": "beta", "dr": "dr", "ds": "ds", "db": "db"}
 

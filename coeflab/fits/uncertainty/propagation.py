@@ -8,13 +8,11 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.special import ndtri
 
-if TYPE_CHECKING:
-    from coeflab.core.types import Array
+from coeflab.core.types import Array
 
 STEP = 0.01
 LOW, HIGH = 2.275013194817921, 97.72498680518208

@@ -7,12 +7,10 @@ counts. For schemes of second order on geometrically similar grids.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 from scipy.optimize import minimize_scalar
 
-from coeflab.core.types import dataclass
+from coeflab.core.types import Array, dataclass
 from coeflab.fits.uncertainty.grid_convergence import (
     OUTSIDE,
     RANGE_OR_ORDER,
@@ -22,10 +20,6 @@ from coeflab.fits.uncertainty.grid_convergence import (
     Convergence,
     GridConvergence,
 )
-
-if TYPE_CHECKING:
-    from coeflab.core.types import Array
-
 
 LOWEST, HIGHEST, RELIABLE = 0.5, 2.0, 2.1
 SEARCHED = (0.05, 8.0)

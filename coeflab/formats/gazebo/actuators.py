@@ -18,6 +18,7 @@ from xml.etree.ElementTree import Element
 
 import numpy as np
 
+from coeflab.core.axes import FLU
 from coeflab.core.finding import Finding, Severity
 from coeflab.core.text.xml import numbers
 from coeflab.core.types import Array, brief, locking
@@ -27,7 +28,6 @@ from coeflab.formats.gazebo.lift_drag import LiftDrag, at_hull, read_lift_drag
 from coeflab.formats.left_out import left_out
 from coeflab.law.symbols import COMPONENTS
 from coeflab.vehicle.parameter_parts import CurveSegment, ParameterCurve, ParameterSurface, ParameterThruster
-from coeflab.vehicle.second_order import FLU
 
 ALONG = 0.95  # cosine between a hinge and an axis of the body: 18 deg
 STEP = 1e-4  # rad, and of the speed

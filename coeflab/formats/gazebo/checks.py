@@ -9,6 +9,7 @@ from xml.etree.ElementTree import Element
 import numpy as np
 
 from coeflab.bodies.closed_forms.ellipsoid import ellipsoid_added_mass
+from coeflab.core.axes import FLU
 from coeflab.core.finding import Finding, Severity
 from coeflab.core.table import Check, as_check
 from coeflab.core.text.xml import numbers, read_xml
@@ -22,7 +23,6 @@ from coeflab.formats.left_out import MOST
 from coeflab.law.rigid_body import ideal_quadratics, inertia_doubt
 from coeflab.law.water import ROUND_DENSITY
 from coeflab.vehicle.imported_numbers import Written, displaced, gravity, imperial, munk_twice, no_mass, water
-from coeflab.vehicle.second_order import FLU
 
 SQUARES = tuple(FORCES[i] + VELOCITIES[i] * 2 for i in range(6))
 TURN, FREE = 2.0 * math.pi + 1e-3, 1e6  # rad; limits of joints that turn freely are written as huge numbers

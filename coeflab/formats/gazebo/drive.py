@@ -13,6 +13,7 @@ from xml.etree.ElementTree import Comment, Element, SubElement
 
 import numpy as np
 
+from coeflab.core.axes import FLU
 from coeflab.core.types import Array
 from coeflab.core.wording import identifier, one_line
 from coeflab.formats.exported_law import number
@@ -21,7 +22,6 @@ from coeflab.formats.gazebo.lift_drag import at_hull, read_lift_drag
 from coeflab.vehicle.expected_signs import control_signs
 from coeflab.vehicle.parameter_file import ParameterFile
 from coeflab.vehicle.parameter_parts import ParameterSurface
-from coeflab.vehicle.second_order import FLU
 
 SMALL_MASS, SMALL_INERTIA = 1e-3, 1e-6  # kg, kg m^2: SDFormat wants some
 LIMIT = 0.6  # rad, of a control whose limit the file does not state

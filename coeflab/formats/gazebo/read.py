@@ -10,6 +10,7 @@ from xml.etree.ElementTree import Element
 
 import numpy as np
 
+from coeflab.core.axes import FLU
 from coeflab.core.finding import Finding, Severity
 from coeflab.core.limits import XML_BYTES
 from coeflab.core.text.toml import read_text
@@ -42,7 +43,7 @@ from coeflab.formats.link_file import LinkModel, link_file
 from coeflab.vehicle.imported_numbers import BUOYANCY
 from coeflab.vehicle.parameter_file import ParameterFile
 from coeflab.vehicle.parameter_parts import ParameterHydrostatics
-from coeflab.vehicle.second_order import FLU, SecondOrder
+from coeflab.vehicle.second_order import SecondOrder
 
 __all__ = ["citations", "examine", "read", "reads", "recognises", "signs", "summary"]
 summary = "gz-sim SDF or URDF: Hydrodynamics plugin and <fluid_added_mass>, link frame FLU to FRD"

@@ -12,6 +12,7 @@ from xml.etree.ElementTree import Element, SubElement
 
 import numpy as np
 
+from coeflab.core.axes import FLU
 from coeflab.core.text.xml import parse_xml, sayable, serialised
 from coeflab.core.types import Array
 from coeflab.core.wording import identifier, one_line
@@ -25,7 +26,7 @@ from coeflab.formats.missing_parts import missing_mass, missing_water
 from coeflab.law.symbols import CONTROLS
 from coeflab.vehicle.inertia import central_inertia, water_inertia
 from coeflab.vehicle.parameter_file import ParameterFile
-from coeflab.vehicle.second_order import FLU, SecondOrder, slot
+from coeflab.vehicle.second_order import SecondOrder, slot
 
 INERTIA = ((0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2))
 AXES = "axes: FRD to the link frame x forward, y port, z up; Y Z M N v w q r change sign, factors between bars do not"

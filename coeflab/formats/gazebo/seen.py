@@ -10,10 +10,10 @@ import numpy as np
 from coeflab.bodies.mesh.mesh import TriangleMesh
 from coeflab.bodies.mesh.meshing import meshed
 from coeflab.bodies.shape import Shape
+from coeflab.core.axes import FLU
 from coeflab.core.errors import InputError
 from coeflab.core.types import Array
 from coeflab.formats.gazebo.sdf import ELLIPSOID
-from coeflab.vehicle.second_order import FLU
 
 PANELS = 8000
 _VISUAL = re.compile(rb'<visual name="hull">.*?</visual>', re.DOTALL)

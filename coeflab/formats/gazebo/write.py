@@ -11,6 +11,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
+from coeflab.core.axes import FLU
 from coeflab.formats.exported_law import common_changes, exported_law
 from coeflab.formats.gazebo.sdf import (
     fins,
@@ -26,7 +27,6 @@ from coeflab.formats.gazebo.sdf import (
 from coeflab.formats.gazebo.seen import with_mesh
 from coeflab.law.rigid_body import ideal_quadratics
 from coeflab.vehicle.parameter_file import ParameterFile
-from coeflab.vehicle.second_order import FLU
 
 summary = "gz-sim: SDF 1.10 with <fluid_added_mass>, viscous parts in the Hydrodynamics plugin"
 citations = ("fossen2011", "gz_sim")

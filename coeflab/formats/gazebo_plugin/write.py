@@ -11,6 +11,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
+from coeflab.core.axes import FLU
 from coeflab.formats.exported_law import common_changes, exported_law, number
 from coeflab.formats.gazebo.law import FORCES, VELOCITIES
 from coeflab.formats.gazebo.sdf import (
@@ -26,7 +27,6 @@ from coeflab.formats.gazebo.sdf import (
 )
 from coeflab.formats.gazebo.seen import with_mesh
 from coeflab.vehicle.parameter_file import ParameterFile
-from coeflab.vehicle.second_order import FLU
 
 summary = "gz-sim: SDF 1.9, added mass and total damping in the Hydrodynamics plugin, its Coriolis disabled"
 citations = ("fossen2011", "gz_sim")

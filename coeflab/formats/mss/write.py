@@ -68,11 +68,6 @@ _NAMES = {
 }
 
 
-def _lacking(parameters: ParameterFile) -> tuple[str, ...]:
-    """Components without a law, and members of h that a loop about the function needs and the file does not give."""
-    return *in_header(parameters, tables=True), *unstated(parameters, _NAMES)
-
-
 def _quoted(text: str) -> str:
     return "'" + one_line(text).replace("'", "''") + "'"
 
@@ -103,7 +98,7 @@ def _head(function: str, parameters: ParameterFile) -> list[str]:
         "%   (MRB + MA)*nu_dot + CRB*nu + g = tau + tau_control",
         "% tau contains -C_A(nu)*nu already (the Munk moment in Nv and Mw): do not add m2c(MA, nu).",
         *([] if commands else [f"% {propulsion(parameters)}."]),
-        *(f"% {words}." for words in _lacking(parameters)),
+        *(f"% {words}." for words in (*in_header(parameters, tables=True), *unstated(parameters, _NAMES))),
         "%",
         "% Primes: Y = 1/2 rho U^2 L^2 Y', v' = v/U, r' = r L/U, U = |(u, v, w)|; a in a name is an absolute value,",
         "% h.Yvav that of v|v|.",

@@ -12,6 +12,7 @@ from xml.etree.ElementTree import Element, SubElement
 
 import numpy as np
 
+from coeflab.core.axes import FLU
 from coeflab.core.text.xml import parse_xml, serialised
 from coeflab.core.types import Array
 from coeflab.core.wording import identifier, one_line
@@ -26,7 +27,7 @@ from coeflab.law.symbols import COMPONENTS
 from coeflab.law.transforms import derivative_transfer, force_transfer, moved, velocity_transfer
 from coeflab.vehicle.inertia import central_inertia, centre_of_gravity, water_inertia
 from coeflab.vehicle.parameter_file import ParameterFile
-from coeflab.vehicle.second_order import FLU, ROUNDING, SURGE, products_once, slot
+from coeflab.vehicle.second_order import ROUNDING, SURGE, products_once, slot
 
 summary = "uuv_simulator and DAVE: URDF with hydrodynamic_model fossen, viscous parts beside its added mass"
 citations = ("fossen2011", "uuv_simulator")

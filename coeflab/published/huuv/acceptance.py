@@ -90,10 +90,6 @@ def turned(huuv: Huuv, file: ParameterFile) -> tuple[ComparedTable, ...]:
     )
 
 
-def _case(turns: Turns, row: int) -> str:
-    return f"{turns.left[row]:g}, {turns.right[row]:g} %"
-
-
 def _wrench(huuv: Huuv, turns: Turns) -> Array:
     c = huuv.constants
     return thrust(turns.left, turns.right, c["slope"], c["intercept"], c["arm"], huuv.dead_zone)
@@ -109,7 +105,7 @@ def _rows(huuv: Huuv, found: Array) -> list[Row]:
     computed = np.column_stack([found[:, 0], np.degrees(np.abs(ours.drift)), ours.radius, np.abs(found[:, 2])])
     names = (("u", "m/s"), ("|beta|", "deg"), ("R", "m"), ("|r|", "rad/s"))
     return [
-        Row(_case(turns, i), name, unit, float(against), float(value))
+        Row(f"{turns.left[i]:g}, {turns.right[i]:g} %", name, unit, float(against), float(value))
         for i, (held, here) in enumerate(zip(printed, computed, strict=True))
         for (name, unit), against, value in zip(names, held, here, strict=True)
         if np.isfinite(against)

@@ -10,14 +10,13 @@ from numpy.typing import NDArray
 from coeflab.bodies.mesh.mesh import TriangleMesh
 from coeflab.bodies.mesh.particulars import mesh_statements
 from coeflab.bodies.simplify.part_file import form_keys
-from coeflab.bodies.simplify.simplification import RULES
+from coeflab.bodies.simplify.simplification import RULES, Simplification
 from coeflab.formats.loss_tables import in_short
 from coeflab.law.symbols import MOTIONS
 from coeflab.report.as_json.motions import carried
 
 if TYPE_CHECKING:
     from coeflab.bodies.body import Body
-    from coeflab.bodies.simplify.simplification import Simplification
     from coeflab.law.added_mass import AddedMass
     from coeflab.study.study import Study
 

@@ -124,7 +124,7 @@ def laws_figure(anchor: str, title: str, caption: str, description: str, plots: 
 
 def _frame(plot: Plot) -> tuple[tuple[float, float], tuple[float, float]]:
     """Both ranges; of what grows downwards the upright one is from below to above on the page."""
-    (x0, x1), (y0, y1) = _across(plot), _up(plot)
+    (x0, x1), (y0, y1) = limits(np.concatenate([t.x for t in plot.traces]), 0.04) or (0.0, 1.0), _up(plot)
     if plot.is_equal:
         ratio = (WIDTH - LEFT - RIGHT) / plot.height
         wide = max(x1 - x0, ratio * (y1 - y0))
@@ -132,10 +132,6 @@ def _frame(plot: Plot) -> tuple[tuple[float, float], tuple[float, float]]:
             ((a + b - w) / 2.0, (a + b + w) / 2.0) for a, b, w in ((x0, x1, wide), (y0, y1, wide / ratio))
         )
     return (x0, x1), (y1, y0) if plot.name_up.split("  ")[0] in DOWNWARDS else (y0, y1)
-
-
-def _across(plot: Plot) -> tuple[float, float]:
-    return limits(np.concatenate([t.x for t in plot.traces]), 0.04) or (0.0, 1.0)
 
 
 def _up(plot: Plot) -> tuple[float, float]:

@@ -65,8 +65,9 @@ def tow_sections(study: Study) -> tuple[Section, ...]:
     if not found:
         return ()
     campaigns = {one.tow.campaign for one in found}
-    unassessed = dict.fromkeys(name for b in study.budgets if b.campaign in campaigns for name in b.unassessed)
-    left = "; ".join(name for name in unassessed if name not in SET_IN_A_COMPUTATION and not name.startswith("grid"))
+    budgets = [b for b in study.budgets if b.campaign in campaigns]
+    known = {*SET_IN_A_COMPUTATION, *(b.open_grid.name for b in budgets if b.open_grid)}
+    left = "; ".join(dict.fromkeys(name for b in budgets for name in b.unassessed if name not in known))
     text: tuple[str, ...] = (
         text_of(
             "campaign.own_tows",

@@ -8,14 +8,13 @@ import numpy as np
 
 from coeflab.core.table import ABSENT, Table, percent
 from coeflab.core.wording import in_sentences, listed
-from coeflab.fits.uncertainty.budget import Budget
 from coeflab.law.coefficient import Coefficient, Status
 from coeflab.law.symbols import primed, read_factors
 from coeflab.report.document import Section
 from coeflab.report.tables import force_tables
 from coeflab.report.tables import nouns as noun_tables
 from coeflab.report.tables import results as tables
-from coeflab.report.tables.budgets import SET_IN_A_COMPUTATION, sentences_on_open
+from coeflab.report.tables.budgets import SET_IN_A_COMPUTATION, grid_of_some, sentences_on_open
 from coeflab.report.texts import table_of, text_of, texts_of
 from coeflab.study.study import Study
 from coeflab.study.symmetry import zeros
@@ -102,10 +101,11 @@ def _table(study: Study, campaign: str, body: str) -> Table:
     )  # fmt: skip
     budgets = [b for b in study.budgets if b.campaign == campaign]
     open_parts = dict.fromkeys(name for b in budgets for name in b.unassessed)
+    held = any(b.part("grid") is not None for b in budgets)
     computed = bool(budgets) and all(b.kind == "cfd" for b in budgets)
     notes = [
         in_one_line(zero), form_not_assessed(shown), shorter_ranges(shown, tied),
-        *sentences_on_open(_of_some(name, budgets) for name in open_parts if not (computed and name in SET_IN_A_COMPUTATION)),
+        *sentences_on_open(grid_of_some(n, budgets, held) for n in open_parts if not (computed and n in SET_IN_A_COMPUTATION)),
         force_tables.unused([t for t in study.tables if t.campaign in campaign.split(", ")]), _wrong(study, campaign),
     ]  # fmt: skip
     return table_of(
@@ -147,15 +147,6 @@ def _motion(symbol: str) -> str:
 def _is_open(c: Coefficient) -> bool:
     """Whether the data leave the sign of a value open."""
     return c.value is not None and c.u95 is not None and bool(abs(c.value) <= c.u95)
-
-
-def _of_some(name: str, budgets: Sequence[Budget]) -> str:
-    """A part that was not assessed; the grid with its symbols where it is in U95 of the others."""
-    if not name.startswith("grid") or all(b.part("grid") is None for b in budgets):
-        return name
-    left = listed([primed(b.symbol) for b in budgets if name in b.unassessed])
-    state = name.removeprefix("grid").replace("(study", "(grid study")
-    return f"grid, for {left}{state}"
 
 
 def _wrong(study: Study, campaign: str) -> str:

@@ -3,24 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from coeflab.core.table import ABSENT, Table, coefficient, number, percent, with_u95
 from coeflab.core.wording import listed
-from coeflab.fits.uncertainty.budget import COUPLED
+from coeflab.fits.results.fitted_model import FittedModel
+from coeflab.fits.uncertainty.budget import COUPLED, Budget
 from coeflab.law.friction_line import FRICTION_APART
 from coeflab.law.symbols import primed
 from coeflab.report.texts import table_of, text_of
-from coeflab.study.validation import AS_PRINTED, WIDE
-
-if TYPE_CHECKING:
-    from coeflab.fits.results.fitted_model import FittedModel
-    from coeflab.fits.uncertainty.budget import Budget
-    from coeflab.study.validation import Validation
-    from coeflab.vehicle.stability import Derived
-
+from coeflab.study.validation import AS_PRINTED, WIDE, Validation
+from coeflab.vehicle.stability import Derived
 
 UNITS = {"angle": "rad", "reference point": "m"}
 READ_IN_A_TEST = ("angle", "rate", "speed", "force", "moment", "length", "density", "reference point", COUPLED)
@@ -48,6 +42,25 @@ def sentences_on_open(names: Iterable[str], *, what: str = "Not in U95") -> list
     read = [n.removeprefix("error of ") for n in left if n in READ_IN_A_TEST]
     words = [*([f"errors of {listed(read)}"] if read else []), *(n for n in left if n not in READ_IN_A_TEST)]
     return [f"{what}: {'; '.join(words)}."] if words else []
+
+
+def grid_of_some(name: str, among: Sequence[Budget] | Sequence[Validation], some: bool) -> str:
+    """A part that was not assessed; the grid with its symbols where it is in the uncertainty of the others.
+
+    Parameters
+    ----------
+    name : str
+        As in `Budget.unassessed`.
+    among : sequence of Budget or Validation
+    some : bool
+        Whether it is.
+    """
+    having = [one for one in among if one.open_grid is not None and one.open_grid.name == name]
+    if not having or not some:
+        return name
+    grid = having[0].open_grid
+    state = f" ({grid.reason})" if grid is not None and grid.study is not None else ""
+    return f"grid, for {listed([primed(one.symbol) for one in having])}{state}"
 
 
 def overview(budgets: Sequence[Budget]) -> Table:
@@ -191,16 +204,11 @@ def validation(found: Sequence[Validation]) -> Table:
     return table_of("uncertainty.validation", rows, (f"{primed(v.symbol)}: {v.statement}." for v in found))
 
 
-def _in_digits(value: float, half: float | None) -> str:
-    """In the digits that go with a half-width; of a value that they do not show, two of its own."""
-    return number(value, 2) if half and abs(value) < 0.01 * half else with_u95(value, half)[0]
-
-
 def predictions(found: Sequence[Validation]) -> Table:
     """Comparison error of every computed coefficient, those with a verdict first, in digits that go with U_V."""
     rows = tuple(
         (
-            primed(v.symbol), v.simulation, v.experiment.removesuffix(AS_PRINTED), _in_digits(v.computed, v.u_validation), with_u95(v.measured, v.u_validation)[0],
+            primed(v.symbol), v.simulation, v.experiment.removesuffix(AS_PRINTED), number(v.computed, 2) if v.u_validation and abs(v.computed) < 0.01 * v.u_validation else with_u95(v.computed, v.u_validation)[0], with_u95(v.measured, v.u_validation)[0],
             *with_u95(v.error, v.u_validation), _verdict(v),
         )
         for v in sorted(found, key=lambda v: v.within is None)

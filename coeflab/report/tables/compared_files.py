@@ -11,13 +11,12 @@ from coeflab.core.table import ABSENT, Table, coefficient, number, with_u95
 from coeflab.core.wording import collected
 from coeflab.law.symbols import CONTROLS
 from coeflab.report.texts import table_of, text_of
-from coeflab.vehicle.comparison import ROUNDING
+from coeflab.vehicle.comparison import ROUNDING, Compared, Comparison
 from coeflab.vehicle.shared_tables import Verdict
 
 if TYPE_CHECKING:
     from coeflab.motion.behaviour import Behaviour
     from coeflab.vehicle.compared_models import ComparedModel
-    from coeflab.vehicle.comparison import Compared, Comparison
     from coeflab.vehicle.parameter_file import ParameterFile
 
 

@@ -3,28 +3,23 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Sequence
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from coeflab.core.provenance import work
 from coeflab.core.table import ABSENT, Table, as_printed, coefficient, percent, plus_minus, with_u95
 from coeflab.core.texts import remark
+from coeflab.core.types import Array
 from coeflab.core.wording import in_sentences, listed
 from coeflab.law.coefficient import NAMED_STATUSES, Status
 from coeflab.law.symbols import ANGLE_NAMES, primed
 from coeflab.report.tables import nouns as noun_tables
 from coeflab.report.tables.results import NO_DATA
 from coeflab.report.texts import table_of
+from coeflab.study.study import Study
 from coeflab.study.validation import WIDE
-from coeflab.vehicle.published_values import Relation
-
-if TYPE_CHECKING:
-    from coeflab.core.types import Array
-    from coeflab.study.study import Study
-    from coeflab.tables.force_table import ForceTable
-    from coeflab.vehicle.published_values import Comparison, Reference
-
+from coeflab.tables.force_table import ForceTable
+from coeflab.vehicle.published_values import Comparison, Reference, Relation
 
 VERDICTS = {True: "pass", False: "fail", None: "no verdict"}
 WEAK = f"our U95 and the source's uncertainty together exceed {100.0 * WIDE:.0f} % of the published value"

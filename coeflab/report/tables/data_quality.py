@@ -10,18 +10,16 @@ from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
 from coeflab.core.finding import Severity
-from coeflab.core.table import ABSENT, Table, coefficient, number, with_u95
+from coeflab.core.table import ABSENT, Check, Table, coefficient, number, with_u95
 from coeflab.core.wording import collected
 from coeflab.fits.statistics.diagnostics import replicate_groups
 from coeflab.law.symbols import LINEAR, MOTIONS, PORT_STARBOARD
 from coeflab.report.texts import table_of
-from coeflab.tables.force_table import AT_REST
+from coeflab.tables.force_table import AT_REST, ForceTable
 
 if TYPE_CHECKING:
-    from coeflab.core.table import Check
     from coeflab.core.types import Array
     from coeflab.fits.results.fit_result import FitResult
-    from coeflab.tables.force_table import ForceTable
 
 SAME_SETTING = 1e-6
 MIRRORED = 0.006  # rad or primed, 0.34 degrees: as far as a set angle is from its mirror image

@@ -3,14 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
 
 from coeflab.core.table import Table, number
 from coeflab.core.wording import collected, in_sentences
 from coeflab.study.towed import STATES
-
-if TYPE_CHECKING:
-    from coeflab.tables.force_table import ForceTable
+from coeflab.tables.force_table import ForceTable
 
 
 def _of(components: Sequence[str], table: ForceTable) -> str:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -12,13 +11,10 @@ from coeflab.core.text.csv_rows import csv_text
 from coeflab.core.wording import collected, listed, one_line
 from coeflab.law.symbols import CONTROLS
 from coeflab.motion.trim.linear_files import ENDINGS
-from coeflab.motion.trim.linear_model import content
+from coeflab.motion.trim.linear_model import LinearModel, Mode, Variable, content
+from coeflab.motion.trim.trim import Trim
 from coeflab.report.texts import table_of
 from coeflab.vehicle.expected_signs import TURNS
-
-if TYPE_CHECKING:
-    from coeflab.motion.trim.linear_model import LinearModel, Mode, Variable
-    from coeflab.motion.trim.trim import Trim
 
 PART = 0.1  # a state with a smaller share is not named in a mode
 FUNCTION = "linear"

@@ -119,6 +119,6 @@ def laws(study: Study) -> list[Table]:
 
 def decided(study: Study) -> list[str]:
     """What the stability indices of its files decide, in words."""
-    settled = {f"{p.name} {d.name}" for p in study.parameter_files.values() for d in stability(p) if d.decided}
+    settled = {f"{p.name} {d.name}": p.name for p in study.parameter_files.values() for d in stability(p) if d.decided}
     own = [c for c in study.checks if c.name == "stability" and c.subject in settled]
-    return [f"{c.subject.split()[0]}: {c.statistic}. {c.comment}" for c in own]
+    return [f"{settled[c.subject]}: {c.statistic}. {c.comment}" for c in own]

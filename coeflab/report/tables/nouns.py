@@ -9,14 +9,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from coeflab.core.table import ABSENT, Table, number, percent, with_u95
-from coeflab.law.coefficient import COVERS, Status
+from coeflab.law.coefficient import COVERS, Coefficient, Status
 from coeflab.law.symbols import COMPONENTS, primed
 from coeflab.report.texts import table_of, text_of, texts_of
 
 if TYPE_CHECKING:
     from coeflab.fits.results.fitted_model import FittedModel
     from coeflab.law.added_mass import AddedMass
-    from coeflab.law.coefficient import Coefficient
     from coeflab.motion.trajectory import Trajectory
     from coeflab.vehicle.parameter_file import ParameterFile
 

@@ -3,19 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from coeflab.core.table import ABSENT, Table, number, percent, plus_minus, probability, with_u95
 from coeflab.core.wording import finite
 from coeflab.fits.planar_motion import against_steady
+from coeflab.fits.results.fit_result import FitResult
+from coeflab.fits.results.oscillation import Explained, Oscillation
 from coeflab.law.symbols import primed
 from coeflab.report.texts import table_of, text_of, texts_of
-
-if TYPE_CHECKING:
-    from coeflab.fits.results.fit_result import FitResult
-    from coeflab.fits.results.oscillation import Explained, Oscillation
 
 OWN = "zero amplitude"
 SIGNIFICANT = 0.05

@@ -3,21 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
 
 from coeflab.core.table import ABSENT, Table, as_printed, percent, with_u95
 from coeflab.core.wording import collected, listed
 from coeflab.law.symbols import primed
-from coeflab.report.tables.budgets import SET_IN_A_COMPUTATION, sentences_on_open
+from coeflab.report.tables.budgets import SET_IN_A_COMPUTATION, grid_of_some, sentences_on_open
 from coeflab.report.tables.results import NO_VALUE
 from coeflab.report.texts import table_of
 from coeflab.study.lines import NAME
 from coeflab.study.towed import NO_RESULT as SHARE
+from coeflab.study.towed import Towed
 from coeflab.study.validation import AS_PRINTED, in_millions
-
-if TYPE_CHECKING:
-    from coeflab.study.towed import Towed
-    from coeflab.study.validation import Validation
 
 NO_RESULT = "no result"
 AGAINST = {True: "within U_V", False: "beyond U_V", None: "no verdict"}
@@ -72,7 +68,7 @@ def tow_against(found: Towed) -> Table:
                 *with_u95(v.error, v.u_validation), verdict,
             )
         )  # fmt: skip
-    none = collected((r.why_none, primed(r.symbol)) for r in found.rows)
+    none = collected((r.why_none, primed(r.symbol)) for r in found.rows if r.why_none and not r.is_turned)
     tests = collected((r.validation.experiment, r) for r in found.rows if r.validation is not None)
     printed = {
         test: [as_printed(p) for r in rows for p in [p for p in r.published if p is not None][:1]]
@@ -83,27 +79,23 @@ def tow_against(found: Towed) -> Table:
         f"D of {', '.join(primed(r.symbol) for r in those)}: {_test(test, printed.get(test, []))}{_stated(found, test)}."
         for test, those in tests.items()
     ]
-    notes += [f"No verdict on {', '.join(s)}: {why}." for why, s in none.items() if why and not why.startswith("as ")]
+    notes += [f"No verdict on {', '.join(s)}: {why}." for why, s in none.items()]
     judged = [r.validation for r in found.rows if r.validation is not None]
     known = dict.fromkeys((v.experiment, v.reynolds) for v in judged)
     notes += [f"Re: {in_millions(s)} in the CFD, {in_millions(d)} in {test}." for test, (s, d) in known if s and d]
     notes += sentences_on_open(
-        (_of_some(u, judged) for v in judged for u in v.lacking if u not in SET_IN_A_COMPUTATION),
+        (
+            grid_of_some(u, judged, not all(u in each.lacking for each in judged))
+            for v in judged
+            for u in v.lacking
+            if u not in SET_IN_A_COMPUTATION
+        ),
         what="From the CFD, U_V leaves out",
     )
     fitted = [primed(v.symbol) for v in judged if v.lacking_measured]
     of = f"U_V of {listed(fitted)}" if 0 < len(fitted) < len(judged) else "U_V"
     notes += sentences_on_open((u for v in judged for u in v.lacking_measured), what=f"From the test, {of} leaves out")
     return table_of("own_cfd.tow_against", rows, notes, name=found.tow.name)
-
-
-def _of_some(name: str, judged: Sequence[Validation]) -> str:
-    """A part that U_V leaves out; the grid with its symbols where U_V of the others has it."""
-    having = [v for v in judged if name in v.lacking]
-    if not name.startswith("grid") or len(having) == len(judged):
-        return name
-    state = name.removeprefix("grid").replace("(study", "(grid study")
-    return f"grid, for {listed([primed(v.symbol) for v in having])}{state}"
 
 
 def _stated(found: Towed, test: str) -> str:

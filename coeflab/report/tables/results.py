@@ -9,13 +9,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from coeflab.core.axes import point_in_words
-from coeflab.core.finding import Severity
+from coeflab.core.finding import Finding, Severity
 from coeflab.core.provenance import work
-from coeflab.core.table import ABSENT, Table, coefficient, number
+from coeflab.core.table import ABSENT, Check, Table, coefficient, number
 from coeflab.core.texts import words
 from coeflab.core.wording import collected, listed
 from coeflab.fits.rows.sweeps import arm_shift
-from coeflab.law.coefficient import COVERS, Status
+from coeflab.law.coefficient import COVERS, Coefficient, Status
 from coeflab.law.symbols import primed
 from coeflab.report.tables import nouns as noun_tables
 from coeflab.report.tables.sources import halves
@@ -24,10 +24,7 @@ from coeflab.study.checks import CHECKS
 from coeflab.tables.assumptions import CODE, FLAG, depends
 
 if TYPE_CHECKING:
-    from coeflab.core.finding import Finding
-    from coeflab.core.table import Check
     from coeflab.fits.results.straight_runs import StraightRuns
-    from coeflab.law.coefficient import Coefficient
     from coeflab.study.study import Study
 
 NO_DATA, NO_VALUE = "no data", "no value"
@@ -43,7 +40,10 @@ def coefficients(study: Study, campaign: str | None = None) -> Table:
     campaign : str, optional
         Only the coefficients of one campaign.
     """
-    chosen = [c for c in study.coefficients if campaign is None or c.campaign == campaign]
+    return _coefficients(study, [c for c in study.coefficients if campaign is None or c.campaign == campaign])
+
+
+def _coefficients(study: Study, chosen: Sequence[Coefficient]) -> Table:
     result = noun_tables.coefficients(chosen, covers=covers(study, chosen))
     flags = [assumed_of(study, c) for c in chosen]
     rows = tuple((f"{row[0]}{FLAG}", *row[1:]) if found else row for row, found in zip(result.rows, flags, strict=True))
@@ -73,15 +73,14 @@ def coefficients_in(study: Study, width: int = 80) -> Table:
     width : int
         At least that of symbol, value and U95, which stay.
     """
-    whole = coefficients(study)
-    without = Status.NO_TABLE.replace("_", " ")
-    rows = [row for row in whole.rows if row[1] != without] or list(whole.rows)
-    campaigns = list(dict.fromkeys(row[whole.headers.index("campaign")] for row in rows))
-    absent = list(dict.fromkeys(row[0] for row in whole.rows if row[1] == without)) * (len(rows) < len(whole.rows))
+    tabled = [c for c in study.coefficients if c.status is not Status.NO_TABLE]
+    absent = dict.fromkeys(primed(c.symbol) for c in study.coefficients if c.status is Status.NO_TABLE and tabled)
+    whole = _coefficients(study, tabled or study.coefficients)
+    campaigns = list(dict.fromkeys(row[whole.headers.index("campaign")] for row in whole.rows))
     chosen = list(range(len(whole.headers)))
 
     def needed() -> int:
-        return sum(max(len(row[i]) for row in (whole.headers, *rows)) + 3 for i in chosen)
+        return sum(max(len(row[i]) for row in (whole.headers, *whole.rows)) + 3 for i in chosen)
 
     gone = []
     for name in DROPPED if len(campaigns) < 2 else (*(n for n in DROPPED if n != "campaign"), "campaign"):
@@ -89,12 +88,12 @@ def coefficients_in(study: Study, width: int = 80) -> Table:
             break
         chosen.remove(whole.headers.index(name))
         gone.append(name)
-    notes = [note for note in whole.notes if not (absent and note.startswith(without))]
+    notes = [*whole.notes]
     notes += [f"No table of the campaign varies the motion of {', '.join(absent)}."] if absent else []
     notes += [f"Not shown: {', '.join(gone)}; --wide shows all."] if gone else []
     of = f" of {campaigns[0]}" if len(campaigns) == 1 and "campaign" in gone and campaigns[0] != ABSENT else ""
     title = whole.title.replace("Coefficients", f"Coefficients{of}", 1)
-    return replace(whole, title=title, rows=tuple(rows), notes=tuple(notes)).only(chosen)
+    return replace(whole, title=title, notes=tuple(notes)).only(chosen)
 
 
 def covers(study: Study, among: Collection[Coefficient] | None = None) -> str:

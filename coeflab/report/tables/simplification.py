@@ -2,18 +2,13 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
 from coeflab.bodies.shape import Faceted, Turned
 from coeflab.bodies.simplify.part_file import form_keys
-from coeflab.bodies.simplify.simplification import RULES
+from coeflab.bodies.simplify.simplification import RULES, Simplification
 from coeflab.core.table import ABSENT, Table, number
 from coeflab.law.symbols import COMPONENTS, MOTIONS
-
-if TYPE_CHECKING:
-    from coeflab.bodies.simplify.simplification import Simplification
 
 UNITS = ("kg",) * 3 + ("kg m^2",) * 3
 POOR_VOLUME = 0.02  # of the mesh's volume

@@ -10,7 +10,6 @@ from coeflab.core.provenance import work
 from coeflab.core.table import Table
 from coeflab.core.wording import collected, listed
 from coeflab.report.texts import table_of
-from coeflab.tables.to_frd import HALF
 
 if TYPE_CHECKING:
     from coeflab.study.study import Study
@@ -79,5 +78,5 @@ def sources(study: Study) -> tuple[str, ...]:
 
 def halves(study: Study) -> tuple[str, ...]:
     """Tables that hold forces of half of a body, and what of them is doubled; a sentence a kind."""
-    by = collected((note, t.name) for t in study.tables for note in t.notes if note.startswith(HALF))
+    by = collected((t.halved, t.name) for t in study.tables if t.halved)
     return tuple(f"{listed(names)}: {note}." for note, names in by.items())

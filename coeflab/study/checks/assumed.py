@@ -6,13 +6,11 @@ from collections.abc import Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from coeflab.core.finding import Fact
-from coeflab.core.table import as_check
+from coeflab.core.finding import Fact, Finding
+from coeflab.core.table import Check, as_check
 from coeflab.tables.assumptions import CODE, INERTIA
 
 if TYPE_CHECKING:
-    from coeflab.core.finding import Finding
-    from coeflab.core.table import Check
     from coeflab.study.study import Study
 
 summary = "keys of campaigns that were accepted and that no source states, with the coefficients that hang on them"

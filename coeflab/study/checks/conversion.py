@@ -9,11 +9,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from coeflab.core.finding import Finding, Severity
-from coeflab.core.table import as_check
+from coeflab.core.table import Check, as_check
 from coeflab.law.symbols import MOTIONS
 
 if TYPE_CHECKING:
-    from coeflab.core.table import Check
     from coeflab.study.study import Conversion, Study
 
 summary = "primes of a campaign and of its copy in other units, axes and about another point"

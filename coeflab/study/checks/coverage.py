@@ -12,19 +12,17 @@ from coeflab.core.table import Check, as_check
 from coeflab.fits.rows.sweeps import FEWEST_SETTINGS, JUMPED, STALLED
 from coeflab.fits.rows.too_few import FEW_ROWS
 from coeflab.fits.statistics.diagnostics import replicate_groups
-from coeflab.fits.statistics.least_squares import factorise, solve
+from coeflab.fits.statistics.least_squares import Index, factorise, solve
 from coeflab.fits.statistics.robust_errors import t_probability
 from coeflab.fits.statistics.slopes import design
 from coeflab.law.coefficient import Status
 from coeflab.law.symbols import primed
 from coeflab.tables.evidence import trend
-from coeflab.tables.force_table import AT_REST
+from coeflab.tables.force_table import AT_REST, ForceTable
 
 if TYPE_CHECKING:
     from coeflab.fits.results.fit_result import Sweep
-    from coeflab.fits.statistics.least_squares import Index
     from coeflab.study.study import Study
-    from coeflab.tables.force_table import ForceTable
 
 summary = "points, sides, distance of the first angle, sign, replicates, a moment of the other plane"
 citations = ("roddy1990",)

@@ -19,7 +19,7 @@ from coeflab.core.wording import listed
 from coeflab.fits.rows.straight_runs import straight_runs
 from coeflab.fits.rows.sweeps import arm_shift, collect_points, sweep_rows
 from coeflab.fits.statistics import data_gate, origin_slope
-from coeflab.fits.statistics.data_gate import FEWEST, Parity
+from coeflab.fits.statistics.data_gate import FEWEST, Gate, Parity, Screened
 from coeflab.fits.statistics.slopes import rest_and_curvature
 from coeflab.law.symbols import MOMENTS, PORT_STARBOARD, primed
 from coeflab.study.rows_elsewhere import Exchanged, Slope, exchanged_rows, grid_rows_elsewhere
@@ -27,7 +27,6 @@ from coeflab.study.table_sweeps import Sweep, ahead_counts, setting_in_words, sw
 
 if TYPE_CHECKING:
     from coeflab.core.types import Array
-    from coeflab.fits.statistics.data_gate import Gate, Screened
     from coeflab.study.study import Study
     from coeflab.tables.force_table import ForceTable
 

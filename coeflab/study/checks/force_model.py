@@ -5,11 +5,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from coeflab.core.table import as_check
+from coeflab.core.table import Check, as_check
 from coeflab.vehicle.held_to_model import OF_A_MODEL
 
 if TYPE_CHECKING:
-    from coeflab.core.table import Check
     from coeflab.study.study import Study
 
 summary = "the law of a file against the force model that it was made from"

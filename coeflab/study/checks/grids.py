@@ -8,17 +8,14 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from coeflab.core.finding import Finding, Severity
-from coeflab.core.table import as_check
+from coeflab.core.table import Check, as_check
 from coeflab.fits.uncertainty.budget import TELLING
 from coeflab.fits.uncertainty.grid_convergence import Convergence
-from coeflab.fits.uncertainty.grid_studies import grid_studies
-from coeflab.tables.force_table import FINER, grids
+from coeflab.fits.uncertainty.grid_studies import GridStudy, grid_studies
+from coeflab.tables.force_table import FINER, ForceTable, grids
 
 if TYPE_CHECKING:
-    from coeflab.core.table import Check
-    from coeflab.fits.uncertainty.grid_studies import GridStudy
     from coeflab.study.study import Study
-    from coeflab.tables.force_table import ForceTable
 
 summary = "grid that a table is fitted on, and whether its grid studies ask for a finer one"
 citations = ("celik2008", "eca2014")

@@ -7,13 +7,12 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from coeflab.core.finding import Finding, Severity
-from coeflab.core.table import as_check
+from coeflab.core.table import Check, as_check
 from coeflab.vehicle.not_in_law import NOT_IN_LAW
 from coeflab.vehicle.plausibility import plausibility
 from coeflab.vehicle.plausible_added_mass import LAW
 
 if TYPE_CHECKING:
-    from coeflab.core.table import Check
     from coeflab.study.study import Study
     from coeflab.vehicle.parameter_file import ParameterFile
 

@@ -9,14 +9,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from coeflab.core.finding import Finding, Severity
-from coeflab.core.table import as_check
-from coeflab.tables.force_table import AT_REST, DRIVEN
+from coeflab.core.table import Check, as_check
+from coeflab.tables.force_table import AT_REST, DRIVEN, ForceTable
 from coeflab.tables.levels import APART, levels_of
 
 if TYPE_CHECKING:
-    from coeflab.core.table import Check
     from coeflab.study.study import Study
-    from coeflab.tables.force_table import ForceTable
 
 summary = "rows in which a propeller runs, and the rate of self-propulsion by X of straight runs"
 citations = ("sname1950",)

@@ -6,13 +6,11 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from coeflab.core.finding import Finding, Severity
-from coeflab.core.table import as_check
-from coeflab.vehicle.published_values import Relation
+from coeflab.core.table import Check, as_check
+from coeflab.vehicle.published_values import Reference, Relation
 
 if TYPE_CHECKING:
-    from coeflab.core.table import Check
     from coeflab.study.study import Study
-    from coeflab.vehicle.published_values import Reference
 
 summary = "published columns that are compared with nothing, and by which key"
 citations = ()

@@ -7,11 +7,10 @@ from typing import TYPE_CHECKING
 
 from coeflab.core.finding import Severity
 from coeflab.core.table import Check, plus_minus
-from coeflab.law.coefficient import Status
+from coeflab.law.coefficient import Coefficient, Status
 from coeflab.law.symbols import primed
 
 if TYPE_CHECKING:
-    from coeflab.law.coefficient import Coefficient
     from coeflab.study.study import Study
 
 summary = "values smaller than their U95"

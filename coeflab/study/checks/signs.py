@@ -10,12 +10,11 @@ import numpy as np
 
 from coeflab.core.finding import Finding, Severity
 from coeflab.core.table import Check, as_check
-from coeflab.law.coefficient import Status
+from coeflab.law.coefficient import Coefficient, Status
 from coeflab.law.symbols import COMPONENTS, MOTIONS, primed
 from coeflab.vehicle.plausible_added_mass import MISTYPED
 
 if TYPE_CHECKING:
-    from coeflab.law.coefficient import Coefficient
     from coeflab.study.study import Study
     from coeflab.vehicle.parameter_file import ParameterFile
 

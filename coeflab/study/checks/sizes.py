@@ -11,14 +11,13 @@ import numpy as np
 from coeflab.core.finding import Severity
 from coeflab.core.table import Check
 from coeflab.law.friction_line import friction_line
-from coeflab.law.scaling import NOBODYS
+from coeflab.law.scaling import NOBODYS, Conditions, Scaling
 from coeflab.law.symbols import primed
 from coeflab.vehicle.sizes import LARGEST
 
 if TYPE_CHECKING:
     from coeflab.bodies.body import Body
     from coeflab.law.coefficient import Coefficient
-    from coeflab.law.scaling import Conditions, Scaling
     from coeflab.study.study import Study
     from coeflab.tables.force_table import ForceTable
 

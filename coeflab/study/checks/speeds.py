@@ -8,15 +8,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from coeflab.core.finding import Finding, Severity
-from coeflab.core.table import as_check, number
+from coeflab.core.table import Check, as_check, number
 from coeflab.law.symbols import primed
-from coeflab.tables.force_table import AT_REST
+from coeflab.tables.force_table import AT_REST, ForceTable
 from coeflab.tables.levels import SHARE, slopes_by_level
 
 if TYPE_CHECKING:
-    from coeflab.core.table import Check
     from coeflab.study.study import Study
-    from coeflab.tables.force_table import ForceTable
 
 summary = "whether a primed slope is one at every speed of its table; the settings that the source held constant"
 citations = ("sname1950",)

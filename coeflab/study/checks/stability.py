@@ -3,18 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
 
 from coeflab.core.finding import Severity
 from coeflab.core.table import Check
-from coeflab.study.validation import printed_indices
+from coeflab.law.coefficient import Coefficient
+from coeflab.study.study import Study
+from coeflab.study.validation import PrintedIndex, printed_indices
+from coeflab.vehicle.parameter_file import ParameterFile
 from coeflab.vehicle.stability import INDICES, sense, stability, without_restoring
-
-if TYPE_CHECKING:
-    from coeflab.law.coefficient import Coefficient
-    from coeflab.study.study import Study
-    from coeflab.study.validation import PrintedIndex
-    from coeflab.vehicle.parameter_file import ParameterFile
 
 summary = "stability indices G_h and G_v with U95 and verdict"
 citations = ("feldman1979", "roddy1990")

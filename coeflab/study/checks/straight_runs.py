@@ -10,13 +10,12 @@ import numpy as np
 from coeflab.core.finding import Finding, Severity
 from coeflab.core.table import Check, as_check
 from coeflab.core.units import STANDARD_GRAVITY
-from coeflab.fits.results.straight_runs import DOUBTFUL
+from coeflab.fits.results.straight_runs import DOUBTFUL, StraightRuns
 from coeflab.fits.rows.straight_runs import straight_runs
 from coeflab.fits.statistics.linear_model import fit_linear
 from coeflab.law.friction_line import friction_line
 
 if TYPE_CHECKING:
-    from coeflab.fits.results.straight_runs import StraightRuns
     from coeflab.study.study import Study
     from coeflab.tables.force_table import ForceTable
 

@@ -10,15 +10,13 @@ import numpy as np
 from coeflab.core.finding import Finding, Severity
 from coeflab.core.table import Check, as_check, plus_minus
 from coeflab.study.single_motion import commanded
-from coeflab.tables.campaign import CUTS
-from coeflab.tables.force_table import AT_REST
+from coeflab.tables.campaign import CUTS, Cut
+from coeflab.tables.force_table import AT_REST, ForceTable
 from coeflab.tables.half_bodies import Along, forces_across, judged
 
 if TYPE_CHECKING:
     from coeflab.fits.results.fit_result import Sweep
     from coeflab.study.study import Study
-    from coeflab.tables.campaign import Cut
-    from coeflab.tables.force_table import ForceTable
 
 summary = "intercepts of Y, K, N at zero drift and yaw rate; forces across a plane of symmetry, in motions along it"
 citations = ("wahba1990",)

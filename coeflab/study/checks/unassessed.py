@@ -5,11 +5,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from coeflab.core.table import as_check
+from coeflab.core.table import Check, as_check
 from coeflab.fits.uncertainty.budget import open_parts
 
 if TYPE_CHECKING:
-    from coeflab.core.table import Check
     from coeflab.study.study import Study
 
 summary = "uncertainties that no part of U95 covers, and grid studies that do not converge"

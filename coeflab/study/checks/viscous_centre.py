@@ -17,7 +17,6 @@ from typing import TYPE_CHECKING
 from coeflab.core.finding import Severity
 from coeflab.core.table import Check
 from coeflab.law.symbols import primed
-from coeflab.tables.to_frd import TAKEN_OUT
 from coeflab.vehicle.expected_signs import REACH, UNSURE
 
 if TYPE_CHECKING:
@@ -113,8 +112,7 @@ def _displaced(study: Study, name: str, file: ParameterFile) -> float | None:
 
 def _inertia_taken_out(study: Study, c: Coefficient | None) -> bool | None:
     """None where no table of the study gives the value."""
-    notes = [t.notes for t in study.tables if c is not None and c.table and t.name == c.table]
-    return any(n.startswith(TAKEN_OUT) for n in notes[0]) if notes else None
+    return next((t.inertia_subtracted for t in study.tables if c is not None and c.table and t.name == c.table), None)
 
 
 def _modelled(study: Study, file: ParameterFile, c: Coefficient | None) -> float | None:

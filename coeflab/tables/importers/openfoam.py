@@ -212,7 +212,7 @@ def run(path: Path, options: Mapping[str, Any]) -> Run:
         main, "", case, time, unit, files=tuple(dict.fromkeys(case.files)), stated=stated,
         dialect={"function object": ", ".join(whole), **phrases}, remarks=(*main.remarks, *remarks, *case.notes),
     )  # fmt: skip
-    return Run(case.root, case.root.resolve().name, table, conditions, tables, ending, why)
+    return Run(case.root, case.root.resolve().name, table, conditions, tables, ending, why, cut=not broken)
 
 
 def _scaled(

@@ -7,6 +7,7 @@ import sys
 import tempfile
 import textwrap
 import time
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -14,12 +15,18 @@ from typing import TYPE_CHECKING, Any
 import typer
 
 from coeflab.cli import complete, options, show
+from coeflab.core.errors import CoeflabError, InputError
+from coeflab.core.files import located, shipped, typed
+from coeflab.core.machine import cores as machine_cores
+from coeflab.core.machine import physical_memory
+from coeflab.core.wording import file_stem, finite
+from coeflab.tank.folder import CAMPAIGN, PLAN, REPORT, TANK, has_begun, read_plan, refuse_other
+from coeflab.tank.jobs import JobState
+from coeflab.tank.states import JobRow, states_of, time_left
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping, Sequence
-
-    from coeflab.tank.states import JobRow
-    from coeflab.tank.tow import Collected, Tow
+    from coeflab.tank.collected import Collected
+    from coeflab.tank.tow import Tow
 
 
 EXAMPLE = "coeflab tow suboff_bare_hull --dry-run"
@@ -62,10 +69,6 @@ def command(
     Drift, attack and rotating arm; coefficients with uncertainty come out. Writes meshes, cases, runs, a campaign and a report into one folder. Ctrl-C and kill -9 lose nothing: --continue goes
     on. Exit code 1 when a condition did not converge.
     """
-    from coeflab.core.errors import InputError
-    from coeflab.core.files import typed
-    from coeflab.tank.folder import PLAN, TANK, has_begun
-
     modes = {"--dry-run": dry_run, "--continue": go_on, "--status": status, "--collect": collect}
     chosen = [name for name, on in modes.items() if on]
     if len(chosen) > 1:
@@ -94,8 +97,6 @@ def command(
 
 def _folder(out: Path | None, body: str) -> Path:
     """The folder of a tow that is there."""
-    from coeflab.tank.folder import PLAN, read_plan
-
     folder = out if out is not None else Path(RUNS) / Path(body).name if body else Path()
     if not (folder / PLAN).is_file() and body and out is None and Path(body).is_dir():
         folder = Path(body)
@@ -104,8 +105,6 @@ def _folder(out: Path | None, body: str) -> Path:
 
 
 def _refuse_begun(folder: Path) -> None:
-    from coeflab.core.errors import InputError
-
     raise InputError("a tow that has begun", "--continue to go on with it, or another --out", file=folder,
                      advice="What is finished and unchanged is kept.")  # fmt: skip
 
@@ -116,9 +115,6 @@ def _tow(
 ) -> None:  # fmt: skip
     """Lay out, and unless it is a dry run, carry out and collect."""
     import coeflab.tank.tow as tank_room
-    from coeflab.core.files import located
-    from coeflab.core.wording import file_stem
-    from coeflab.tank.folder import PLAN, has_begun, read_plan, refuse_other
 
     body = located(body_name, "geometry") if body_name else None
     with show.progress(json) as say:
@@ -172,13 +168,9 @@ def _dry(
     by_default: bool = False,
 ) -> None:  # fmt: skip
     """What the tow is expected to take, and what to install."""
-    from coeflab.core.machine import cores as machine_cores
-    from coeflab.core.machine import physical_memory
     from coeflab.tank import tables
-    from coeflab.tank.folder import has_begun
-    from coeflab.tank.states import states_of, time_left
 
-    budget = cores or int(tow.tank.runner_options.get("cores", 0)) or machine_cores()
+    budget = cores or _cores(tow)
     rows = states_of(tow.folder) if tow.jobs else ()
     seconds = time_left(rows, budget) if rows else 0.0
     memory = max((j.memory for j in tow.jobs), default=0.0)
@@ -238,7 +230,6 @@ def _at_once(tow: Tow, budget: int) -> float:
 
 def _fates(tow: Tow, before: Mapping[str, Any] | None) -> None:
     """What is kept, and what is run anew and why."""
-    from coeflab.tank.jobs import JobState
     from coeflab.tank.tow import ANEW, BEGINS, reuse
 
     found = reuse(tow, before)
@@ -260,7 +251,7 @@ def _fates(tow: Tow, before: Mapping[str, Any] | None) -> None:
 def _carry_out(tow: Tow, before: Mapping[str, Any] | None, folder: Path, cores: int, json: bool) -> None:
     """Run what is not finished with a live table; then the answer. Ctrl-C leaves everything to go on from."""
     import coeflab.tank.tow as tank_room
-    from coeflab.tank.folder import has_begun
+    from coeflab.tank.collected import collected, filled
 
     if before is not None and not json and has_begun(tow.folder):
         _fates(tow, before)
@@ -268,23 +259,22 @@ def _carry_out(tow: Tow, before: Mapping[str, Any] | None, folder: Path, cores: 
         with _live(tow, json) as look:
             tank_room.carried_out(tow, cores, look)
     except KeyboardInterrupt:
-        tank_room.collected(tow, fitted=False)
+        collected(tow, fitted=False)
         _stopped(tow, folder)
         raise typer.Exit(INTERRUPTED) from None
     show.step("fitting and drawing the report", json)
-    result = tank_room.collected(tow)
-    if tow.solver.table is not None and not json and not tank_room.filled(tow):
+    result = collected(tow)
+    if tow.solver.table is not None and not json and not filled(tow):
         show.sentence(f"{tow.tank.name}: {len(tow.tank.matrix)} conditions to be computed or measured outside coeflab.")
         show.text(f"Run list: {folder / tow.tank.solver / 'run_list.csv'}")
         show.text("Next:")
         show.sentence(f"  {_next(tow, result, folder)}")
         return
-    _answer(tow, result, folder, json, begun=tow.solver.table is not None and not tank_room.filled(tow))
+    _answer(tow, result, folder, json, begun=tow.solver.table is not None and not filled(tow))
 
 
 def _stopped(tow: Tow, folder: Path) -> None:
     from coeflab.tank import tables
-    from coeflab.tank.states import states_of
 
     show.text()
     show.sentence(f"Stopped: {tables.counted(states_of(tow.folder))}. Nothing is lost.")
@@ -297,11 +287,8 @@ def _live(tow: Tow, json: bool) -> Iterator[Any]:
 
     The campaign is written again whenever a run has ended, so that a kill leaves what was finished as a table.
     """
-    import coeflab.tank.tow as tank_room
-    from coeflab.core.errors import CoeflabError
     from coeflab.tank import tables
-    from coeflab.tank.folder import read_plan
-    from coeflab.tank.states import states_of, time_left
+    from coeflab.tank.collected import collected
 
     shown = tables.shown_of(read_plan(tow.folder))
     words: dict[str, str] = {row.job.name: str(row.progress.state) for row in states_of(tow.folder)} if tow.jobs else {}
@@ -317,7 +304,7 @@ def _live(tow: Tow, json: bool) -> Iterator[Any]:
         over = [r for r in fresh if r.progress.state.is_final or r.progress.why]
         if any(not r.job.name.startswith("mesh/") for r in over):
             try:
-                tank_room.collected(tow, fitted=False)
+                collected(tow, fitted=False)
             except CoeflabError as why:  # it is tried again with the next run, and at the end
                 trouble[:] = [str(why)]
         if not on_terminal and not json:
@@ -362,9 +349,7 @@ def _live(tow: Tow, json: bool) -> Iterator[Any]:
 
 
 def _cores(tow: Tow) -> int:
-    from coeflab.core.machine import cores
-
-    return int(tow.tank.runner_options.get("cores", 0)) or cores()
+    return int(tow.tank.runner_options.get("cores", 0)) or machine_cores()
 
 
 def _left(seconds: float) -> str:
@@ -392,15 +377,14 @@ def _ended(row: JobRow, shown: Mapping[str, Any], rows: Sequence[JobRow]) -> str
 def _status(folder: Path, json: bool) -> None:
     """The states of a tow that another process may carry out."""
     from coeflab.tank import tables
-    from coeflab.tank.folder import read_plan
-    from coeflab.tank.states import states_of, time_left
 
     plan = read_plan(folder)
     if not plan["jobs"]:
-        import coeflab.tank.tow as tank_room
+        from coeflab.tank.collected import filled
+        from coeflab.tank.tow import opened
 
-        tow = tank_room.opened(folder)
-        done, many = tank_room.filled(tow), len(tow.tank.matrix)
+        tow = opened(folder)
+        done, many = filled(tow), len(tow.tank.matrix)
         if json:
             show.json_object({"name": plan["name"], "solver": plan["solver"], "filled": done, "conditions": many})
             return
@@ -409,11 +393,10 @@ def _status(folder: Path, json: bool) -> None:
         show.sentence(f"Next: coeflab tow {shlex.quote(str(folder))} --collect")
         return
     rows = states_of(folder)
-    from coeflab.core.machine import cores
 
-    seconds = time_left(rows, cores())
+    seconds = time_left(rows, machine_cores())
     if json:
-        show.json_object({"name": plan["name"], "solver": plan["solver"], "seconds_left": _finite(seconds),
+        show.json_object({"name": plan["name"], "solver": plan["solver"], "seconds_left": finite(seconds),
                           "jobs": [_row(r) for r in rows]})  # fmt: skip
         return
     show.sentence(
@@ -422,36 +405,30 @@ def _status(folder: Path, json: bool) -> None:
     show.table(tables.states(rows, tables.shown_of(plan)))
 
 
-def _finite(value: float) -> float | None:
-    from coeflab.core.wording import finite
-
-    return finite(value)
-
-
 def _row(row: JobRow) -> dict[str, Any]:
     now = row.progress
     return {
-        "name": row.job.name, "state": str(now.state), "iteration": _finite(now.iteration), "seconds": now.seconds,
-        "seconds_left": _finite(row.left), "memory": now.memory, "resumed_from": _finite(now.resumed_from),
-        "means": {k: _finite(v) for k, v in now.means.items()}, "errors": {k: _finite(v) for k, v in now.errors.items()},
+        "name": row.job.name, "state": str(now.state), "iteration": finite(now.iteration), "seconds": now.seconds,
+        "seconds_left": finite(row.left), "memory": now.memory, "resumed_from": finite(now.resumed_from),
+        "means": {k: finite(v) for k, v in now.means.items()}, "errors": {k: finite(v) for k, v in now.errors.items()},
         "why": now.why or None, "remarks": list(now.remarks),
     }  # fmt: skip
 
 
 def _collected_only(folder: Path, json: bool) -> None:
-    import coeflab.tank.tow as tank_room
+    from coeflab.tank.collected import collected
+    from coeflab.tank.tow import opened
 
     with show.progress(json) as say:
         say("reading the tow")
-        tow = tank_room.opened(folder)
+        tow = opened(folder)
     show.step("fitting and drawing the report", json)
-    _answer(tow, tank_room.collected(tow), folder, json)
+    _answer(tow, collected(tow), folder, json)
 
 
 def _answer(tow: Tow, result: Collected, folder: Path, json: bool, begun: bool = False) -> None:
     """The six derivatives first, then the conditions, the files and the next command; exit code 1 where one did not converge."""
     from coeflab.tank import tables
-    from coeflab.tank.folder import CAMPAIGN, REPORT
 
     if json:
         show.json_object(_as_json(tow, result))
@@ -488,9 +465,6 @@ def _as_json(tow: Tow, result: Collected) -> dict[str, Any]:
 
 def _next(tow: Tow, result: Collected, folder: Path) -> str:
     """What to type, or to mend first."""
-    from coeflab.core.files import shipped
-    from coeflab.tank.folder import CAMPAIGN, TANK
-    from coeflab.tank.jobs import JobState
     from coeflab.tank.tables import is_estimated
 
     place = shlex.quote(str(folder))

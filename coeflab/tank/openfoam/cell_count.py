@@ -111,7 +111,7 @@ def _refined(points: Array, levels: NDArray[np.int64], sizes: MeshSizes) -> list
     for level in reversed(range(finest)):
         wanted = [_crossed(points[levels > level], level, sizes), *_in_regions(level, sizes)]
         if level + 1 < finest:
-            wanted.append(_parents(_spread(refined[level + 1], level + 1, sizes)))
+            wanted.append(_once(_packed(_unpacked(_spread(refined[level + 1], level + 1, sizes)) >> 1)))
         refined[level] = _once(np.concatenate(wanted))
     return refined
 
@@ -211,7 +211,3 @@ def _packed(cells: Keys) -> Keys:
 def _unpacked(keys: Keys) -> Keys:
     mask = (1 << BITS) - 1
     return np.stack([keys >> 2 * BITS, (keys >> BITS) & mask, keys & mask], axis=1)
-
-
-def _parents(keys: Keys) -> Keys:
-    return _once(_packed(_unpacked(keys) >> 1))

@@ -176,9 +176,7 @@ def _column(cells: Cells, header: Header) -> RawColumn:
         try:
             values = cells.numbers(name) * factor(require_unit(header, cells.file, line, f"{name} [{unit}]"), dimension)
         except UnitsError as why:
-            raise UnitsError(
-                why.found, why.expected, file=cells.file, line=line, column=header.text, advice=why.advice
-            ) from None
+            raise why.at(cells.file, line, header.text) from None
     else:
         known = f"{CONDITION}, {', '.join(COMPONENTS)}, se_ before one of these, {', '.join(COUNTS)}"
         raise input_error("tow.unknown_column", cells.file, line, header.text, text=shown(header.text), expected=known)

@@ -273,7 +273,7 @@ def history(folder: Path) -> Run:
     grown = _too_large(run.history, 0.5 * density * fastest**2 * length**2, length)
     if grown:
         return replace(run, ended=Ended.DIVERGED, why=grown)
-    if run.ended is Ended.CRASHED and not run.why.startswith("log"):
+    if run.ended is Ended.CRASHED and run.cut:
         return replace(run, ended=Ended.WHOLE, why="")  # a line that the solver is writing now
     return run
 
