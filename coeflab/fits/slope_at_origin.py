@@ -217,6 +217,10 @@ def _sweep(
     near = [] if value is None else _nearest(*each, target, middle, bool(plane), odd)
     u95 = _holding(near, value, u95)
     random = _random(origin, moved, u95)
+    rounding = 0.0
+    if value is not None and u95 is not None and len(x) == len(each[0]):
+        digits = _digits(rows, component, length, x)
+        rounding = slopes.by_digits(*each, digits, target, origin.noise, bool(plane), odd, value, u95)
     with_all = value
     if parity == "even" and np.any(np.isfinite(origin.without) & np.logical_not(origin.used)):
         everything = slopes.of_all_rows(origin, x, y, se)
@@ -273,6 +277,7 @@ def _sweep(
         withdrawn=withdrawn,
         by_symmetry=rows.table.by_symmetry,
         bias=bias,
+        rounding=rounding,
         borrowed=rows.rest[0].name if rows.rest is not None and component in rows.rest[0].forces and not odd else "",
     )
     return sweep, origin
@@ -289,9 +294,7 @@ def _nearest(
     out, size = [], np.abs(x)
     half = float(np.max(size, initial=0.0)) / 2.0
     while half and len(np.unique(np.round(x[inside := size <= half] / half, 2))) >= NEAR:
-        o = origin_slope.estimate(x[inside], y[inside], None if se is None else se[inside], odd=odd)
-        mean, width = origin_slope.curve(o, np.zeros(1))
-        value, u95, _ = slopes.determined(o, target, middle, (float(mean[0]), float(width[0])), plane)
+        value, u95 = slopes.of_rows(x[inside], y[inside], None if se is None else se[inside], target, middle, plane, odd)
         if value is not None and u95 is not None:
             out.append((half, value, u95))
         half /= 2.0
@@ -303,6 +306,15 @@ def _holding(near: list[tuple[float, float, float]], value: float | None, u95: f
     if value is None or u95 is None:
         return u95
     return max([u95, *(abs(v - value) + u for _, v, u in near if abs(v - value) > np.hypot(u, u95))])
+
+
+def _digits(rows: SweepRows, component: str, length: float, x: Array) -> Array:
+    """Primed standard errors by the last printed digit of readings at settings (n,); zero where a table has all digits."""
+    table = rows.table
+    if component not in table.rounding:
+        return np.zeros(len(x))
+    every = table.primed_force(component, length, table.rounding[component])[rows.rows]
+    return np.asarray(every[np.argmin(np.abs(rows.x[rows.rows] - x[:, None]), axis=1)])
 
 
 def _random(origin: OriginSlope, moved: Array, u95: float | None) -> float | None:

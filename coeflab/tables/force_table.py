@@ -166,6 +166,8 @@ class ForceTable:
         What is assumed of it or left out; they travel with every number that comes of it.
     propeller : dict of str to (n,) array
         ``rps`` in rad/s, ``J``, ``thrust`` in N, where the table has them.
+    rounding : mapping of str to (n,) array
+        Standard errors of forces by the last printed digit of their column; empty where the file has all digits.
     model_mass : float or None
         Of the model, kg, where its campaign states an inertia to be subtracted.
     """
@@ -204,9 +206,10 @@ class ForceTable:
     findings: tuple[Finding, ...] = ()
     propeller: Mapping[str, Array] = field(default_factory=dict)
     model_mass: float | None = None
+    rounding: Mapping[str, Array] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
-        for name in ("motion", "controls", "forces", "errors", "propeller"):
+        for name in ("motion", "controls", "forces", "errors", "propeller", "rounding"):
             object.__setattr__(self, name, locked_columns(getattr(self, name)))
         object.__setattr__(self, "usable", locked_columns(self.usable, bool))
         object.__setattr__(self, "speed", locked(self.speed))
@@ -257,8 +260,9 @@ class ForceTable:
         if self.density is None:
             return self
         ratio = self.conditions.density / self.density
-        forces, errors = ({c: v * ratio for c, v in x.items()} for x in (self.forces, self.errors))
-        return replace(self, forces=forces, errors=errors, density=None)
+        own = (self.forces, self.errors, self.rounding)
+        forces, errors, rounding = ({c: v * ratio for c, v in x.items()} for x in own)
+        return replace(self, forces=forces, errors=errors, rounding=rounding, density=None)
 
     @property
     def setting(self) -> NDArray[np.intp]:
@@ -356,7 +360,7 @@ class ForceTable:
             return self
         nu = np.column_stack([self.motion[m] for m in MOTIONS]) @ velocity_transfer(shift).T
         transfer = force_transfer(shift)
-        forces, errors, usable = dict(self.forces), dict(self.errors), dict(self.usable)
+        forces, errors, rounding, usable = map(dict, (self.forces, self.errors, self.rounding, self.usable))
         exclusions, notes = list(self.exclusions), [f"moments moved by ({', '.join(f'{s:+.6g}' for s in shift)}) m"]
         for i, component in enumerate(COMPONENTS):
             needed = [(c, transfer[i, j]) for j, c in enumerate(COMPONENTS) if transfer[i, j] != 0.0]
@@ -368,20 +372,22 @@ class ForceTable:
                 )
                 del forces[component], usable[component]
                 errors.pop(component, None)
+                rounding.pop(component, None)
                 exclusions = [e for e in exclusions if e.component != component]
                 continue
             forces[component] = np.asarray(sum(self.forces[c] * k for c, k in needed))
             usable[component] = np.logical_and.reduce([self.usable[c] for c, _ in needed])
             exclusions += self._passed_on(component, [c for c, _ in needed if c != component])
-            if all(c in self.errors for c, _ in needed):
-                errors[component] = np.asarray(sum(self.errors[c] * abs(k) for c, k in needed))
-            else:
-                errors.pop(component, None)
+            for moved, known in ((errors, self.errors), (rounding, self.rounding)):
+                moved.pop(component, None)
+                if all(c in known for c, _ in needed):
+                    moved[component] = np.asarray(sum(known[c] * abs(k) for c, k in needed))
         return replace(
             self,
             motion=dict(zip(MOTIONS, nu.T, strict=True)),
             forces=forces,
             errors=errors,
+            rounding=rounding,
             usable=usable,
             exclusions=tuple(exclusions),
             reference_point=np.asarray(point, dtype=float),
