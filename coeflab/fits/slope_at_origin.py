@@ -294,7 +294,9 @@ def _nearest(
     out, size = [], np.abs(x)
     half = float(np.max(size, initial=0.0)) / 2.0
     while half and len(np.unique(np.round(x[inside := size <= half] / half, 2))) >= NEAR:
-        value, u95 = slopes.of_rows(x[inside], y[inside], None if se is None else se[inside], target, middle, plane, odd)
+        value, u95 = slopes.of_rows(
+            x[inside], y[inside], None if se is None else se[inside], target, middle, plane, odd
+        )
         if value is not None and u95 is not None:
             out.append((half, value, u95))
         half /= 2.0

@@ -347,7 +347,9 @@ def _columns(raw: RawTable, known: Sequence[Assigned], campaign: Campaign) -> Co
         unit = speed**2 if one.meaning.per_speed else np.ones(len(rows))
         if one.meaning.pure:
             of_area = 0.5 * density * speed**2 * one.meaning.area * (one.meaning.length or 1.0)
-            unit = unit * (of_area if one.meaning.area else campaign.scaling.unit(one.meaning.component, density, speed))
+            unit = unit * (
+                of_area if one.meaning.area else campaign.scaling.unit(one.meaning.component, density, speed)
+            )
         if one.meaning.per_speed or one.meaning.pure:
             for role in (one.meaning.role, *(["rounding"] if one.meaning.role == "force" else [])):
                 given[role][one.meaning.name] = given[role][one.meaning.name] * unit

@@ -61,7 +61,9 @@ def force_table(columns: Columns, campaign: Campaign, table: TableDeclaration) -
     if table.contains_thrust is not False:
         exclusions = (*exclusions, *_driven(columns, usable))
     forces = {c: sign * columns.forces[s] for c, (s, sign) in sources.items() if s in columns.forces}
-    errors, rounding = ({c: x[s] for c, (s, _) in sources.items() if s in x} for x in (columns.errors, columns.rounding))
+    errors, rounding = (
+        {c: x[s] for c, (s, _) in sources.items() if s in x} for x in (columns.errors, columns.rounding)
+    )
     if columns.radius is not None:
         notes.append(f"rates from U and R, centre of the circle: {table.centre}")
     if table.arm_point is not None and np.any(table.arm_point != point):

@@ -84,7 +84,14 @@ def in_body_axes(columns: Columns, axes: Axes, linear: Array) -> Columns:
         headers[own] = headers.get(of, of)
         for row, words in enumerate(columns.doubtful):
             doubtful[row] |= {own} if words & set(needed) else set()
-    return replace(columns, forces=moved, errors=errors, rounding=rounding, headers=headers, doubtful=tuple(map(frozenset, doubtful)))
+    return replace(
+        columns,
+        forces=moved,
+        errors=errors,
+        rounding=rounding,
+        headers=headers,
+        doubtful=tuple(map(frozenset, doubtful)),
+    )
 
 
 def _wind_complaints(columns: Columns, own: Mapping[str, str]) -> Iterator[InputError]:

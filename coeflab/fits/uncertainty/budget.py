@@ -52,6 +52,7 @@ COUPLED = "error of the drift angle in the rate sweep"
 NOT_OF_A_COMPUTATION = ("force", "moment")
 BOUND_ONLY = ": a bound only"  # of the grid, where the study does not converge: U95 holds a bound by the range
 ITERATIONS = STUDIES["iterations"]
+MOST = 0.5  # of the variance, by the last digit: more digits would narrow U95 most
 LEAST_DIGITS = 1.01  # U95 with that part over U95 without it, below which it is left out
 OF_RESULTS = ("grid", *STUDIES.values(), DIGITS)  # parts from outside the points that no input is
 
@@ -366,7 +367,8 @@ def open_parts(found: Sequence[Budget]) -> tuple[Finding, ...]:
     -------
     tuple of Finding
         ``budget.grid_not_converging`` and ``budget.grid_run_left_out``, warnings, once a study, the first a note where no
-        value is told from zero anyway; ``budget.not_assessed``, a note, once a campaign.
+        value is told from zero anyway; ``budget.digits``, a warning where these are most of a U95, and ``budget.not_assessed``, a note, once a
+        campaign.
     """
     out = []
     for those in _alike([b for b in found if b.grid is not None]):
@@ -402,6 +404,13 @@ def open_parts(found: Sequence[Budget]) -> tuple[Finding, ...]:
         mine = [b for b in found if campaign in b.campaign.split(", ")]
         parts = tuple(dict.fromkeys(name for b in mine for name in b.unassessed))
         stated = "; ".join(dict.fromkeys(filter(None, (b.stated for b in mine))))
+        shares = {primed(b.symbol): p.share for b in mine for p in b.parts if p.name == DIGITS and p.share is not None}
+        if shares:
+            most = max(shares.values())
+            level = Severity.WARN if most > MOST else Severity.NOTE
+            out.append(
+                Finding.of("budget.digits", campaign, level, statistic=most, threshold=MOST, symbols=tuple(shares))
+            )
         if parts:
             out.append(
                 Finding.of(

@@ -147,7 +147,9 @@ def _changed(model: FittedModel, tables: Sequence[ForceTable]) -> dict[str, Arra
 
 def _digits(model: FittedModel) -> dict[str, Array]:
     """Half-widths by the last printed digit, where they widen any."""
-    felt = model.rounding is not None and np.any(np.hypot(model.half_width, model.rounding) > LEAST_DIGITS * model.half_width)
+    felt = model.rounding is not None and np.any(
+        np.hypot(model.half_width, model.rounding) > LEAST_DIGITS * model.half_width
+    )
     return {DIGITS: model.rounding} if felt and model.rounding is not None else {}
 
 

@@ -102,9 +102,7 @@ def _columns(cells: Cells, campaign: Campaign, table: TableDeclaration) -> Colum
     )
     density = given["density"].get("density")
     for kind, values in primes:
-        unit = campaign.scaling.unit(
-            kind.component, campaign.conditions.density if density is None else density, speed
-        )
+        unit = campaign.scaling.unit(kind.component, campaign.conditions.density if density is None else density, speed)
         given[kind.role][kind.name] = values * unit
         if kind.role == "force":
             given["rounding"][kind.name] = given["rounding"][kind.name] * unit
