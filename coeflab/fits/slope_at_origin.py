@@ -14,7 +14,7 @@ with the speed beyond it.
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
@@ -29,12 +29,15 @@ from coeflab.core.types import Array
 from coeflab.fits.results.fit_result import FitResult, LeftOut, Sensitivity, Sweep, independent, result_of
 from coeflab.fits.rows.straight_runs import resistance
 from coeflab.fits.rows.sweeps import (
+    ACROSS,
+    ACROSS_AT,
     FEWEST_SETTINGS,
     INCIDENCE,
     JUMPED,
     STALLED,
     arm_shift,
     collect_points,
+    held,
     one_size,
     sweep_rows,
 )
@@ -206,6 +209,7 @@ def _sweep(
         mean, halves = origin_slope.curve(origin, np.concatenate([x, over]))
         fitted, curve = mean[: len(x)], np.stack([over, mean[len(x) :], halves[len(x) :]])
         at_rest = (float(curve[1, NODES // 2]), float(curve[2, NODES // 2]))
+    at = held(rows.table, variable)
     middle = None if se is None or not np.any(se > 0.0) else float(np.median(se[se > 0.0]))
     value, u95, moved = slopes.determined(origin, target, middle, at_rest, bool(plane))
     if single := _one_size(rows, variable, target, x, origin):
@@ -217,10 +221,6 @@ def _sweep(
     near = [] if value is None else _nearest(*each, target, middle, bool(plane), odd)
     u95 = _holding(near, value, u95)
     random = _random(origin, moved, u95)
-    rounding = 0.0
-    if value is not None and u95 is not None and len(x) == len(each[0]):
-        digits = _digits(rows, component, length, x)
-        rounding = slopes.by_digits(*each, digits, target, origin.noise, bool(plane), odd, value, u95)
     with_all = value
     if parity == "even" and np.any(np.isfinite(origin.without) & np.logical_not(origin.used)):
         everything = slopes.of_all_rows(origin, x, y, se)
@@ -276,8 +276,13 @@ def _sweep(
         symmetry=plane,
         withdrawn=withdrawn,
         by_symmetry=rows.table.by_symmetry,
+        held="" if not at else f"{ACROSS[variable][1]} = {np.degrees(at):.4g} deg",
         bias=bias,
-        rounding=rounding,
+        rounding=0.0
+        if value is None or u95 is None or len(x) != len(each[0])
+        else slopes.by_digits(
+            *each, _digits(rows, component, length, x), target, origin.noise, bool(plane), odd, value, u95
+        ),
         borrowed=rows.rest[0].name if rows.rest is not None and component in rows.rest[0].forces and not odd else "",
     )
     return sweep, origin
@@ -360,6 +365,13 @@ def _no_symmetry(sweep: Sweep) -> Finding:
     )  # fmt: skip
 
 
+def _held(sweeps: Sequence[Sweep]) -> Iterator[Finding]:
+    """Which slopes are those at an angle of the other plane, a warning for each."""
+    for table, at in dict.fromkeys((s.table, s.held) for s in sweeps if s.held and s.value is not None):
+        symbols = [primed(s.symbol) for s in sweeps if (s.table, s.held) == (table, at) and s.value is not None]
+        yield Finding.of(ACROSS_AT, table, Severity.WARN, at=at, symbols=symbols)
+
+
 def _moved(shift: float, table: ForceTable) -> dict[str, str]:
     """Of a table about the point of its sweeps, ``shift`` forward of the point of the coefficients."""
     return {"swept about": point_in_words(table.reference_point, table.datum)} if shift else {}
@@ -388,6 +400,7 @@ def _coefficient(sweep: Sweep, citation: str) -> Coefficient:
         campaign=sweep.campaign,
         estimator=estimator[sweep.target]
         + (f" without point {out}" if out else "")
+        + (f", at {sweep.held}" if sweep.held else "")
         + (f", with the rest row of {sweep.borrowed}" if sweep.borrowed else "")
         + (f", not run: {sweep.by_symmetry} turned by symmetry" if sweep.by_symmetry else ""),
         window=sweep.window,
@@ -449,17 +462,18 @@ def _jobs(tables: Sequence[ForceTable], length: float) -> dict[str, tuple[SweepR
     out: dict[str, tuple[SweepRows, str, str, str]] = {}
     most: dict[str, tuple[bool, int]] = {}
     for variable, odd in ODD.items():
-        for table in (t for t in tables if variable in t.varies):
+        for table in (t for t in tables if variable in t.varies and not held(t, ACROSS.get(variable, ("", ""))[0])):
             rows = sweep_rows(table, variable, tables, length)
             wanted = [(c, f"{c}{variable}", "odd") for c in odd]
-            for c in EVEN.get(variable, ""):
+            at = held(table, variable)
+            for c in EVEN.get(variable, "") if not at else "":
                 wanted += [(c, f"{c}0", "even"), (c, f"{c}{variable}{variable}", "even")]
             for component, symbol, parity in wanted:
                 if component not in table.forces:
                     continue
                 usable = table.usable[component][rows.rows]
                 settings = len(np.unique(levels(rows.x[rows.rows][usable])))
-                rank = (settings >= FEWEST_SETTINGS and not table.by_symmetry, settings)
+                rank = (settings >= FEWEST_SETTINGS and not table.by_symmetry and not at, settings)
                 if rank > most.get(symbol, (False, -1)):
                     out[symbol], most[symbol] = (rows, variable, component, parity), rank
     return out
@@ -541,6 +555,7 @@ def fit(tables: Sequence[ForceTable], scaling: Scaling, options: Mapping[str, An
         covariance = independent([covariance, np.array([[own]])])
     result = result_of(
         "slope_at_origin", first, scaling, coefficients, covariance, citations=citations, settings=_moved(shift, first),
-        sweeps=tuple(sweeps), straight=straight, findings=(*(_no_symmetry(s) for s in sweeps if s.withdrawn is not None), *compared),
+        sweeps=tuple(sweeps), straight=straight,
+        findings=(*(_no_symmetry(s) for s in sweeps if s.withdrawn is not None), *compared, *_held(sweeps)),
     )  # fmt: skip
     return replace(result, coefficients=result.coefficients.about(wanted))

@@ -15,7 +15,6 @@ from coeflab.core.errors import InputError, together
 from coeflab.core.texts import input_error
 from coeflab.core.types import Array, brief
 
-
 FEWEST = 3  # numbers that show the last digit of their column
 MOST_DIGITS, SAME = 9, 1e-12  # behind the point; of the largest number: what a conversion leaves
 

@@ -66,7 +66,6 @@ def main(count: int) -> None:
         cover, without = (f"{100.0 * float(np.mean(error <= u)):.1f}" for u in (after, before))
         wider = float(np.median(after / np.maximum(before, 1e-300)))
         lines.append(f"{design},{n},{100 * noise:g},{100 * digit:g},{count},{cover},{without},{wider:.2f}")
-        print(lines[-1], flush=True)
     TABLE.write_text("\n".join(lines) + "\n")
 
 
