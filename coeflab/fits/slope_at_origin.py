@@ -209,7 +209,6 @@ def _sweep(
         mean, halves = origin_slope.curve(origin, np.concatenate([x, over]))
         fitted, curve = mean[: len(x)], np.stack([over, mean[len(x) :], halves[len(x) :]])
         at_rest = (float(curve[1, NODES // 2]), float(curve[2, NODES // 2]))
-    at = held(rows.table, variable)
     middle = None if se is None or not np.any(se > 0.0) else float(np.median(se[se > 0.0]))
     value, u95, moved = slopes.determined(origin, target, middle, at_rest, bool(plane))
     if single := _one_size(rows, variable, target, x, origin):
@@ -276,7 +275,7 @@ def _sweep(
         symmetry=plane,
         withdrawn=withdrawn,
         by_symmetry=rows.table.by_symmetry,
-        held="" if not at else f"{ACROSS[variable][1]} = {np.degrees(at):.4g} deg",
+        held=_angle_across(rows.table, variable),
         bias=bias,
         rounding=0.0
         if value is None or u95 is None or len(x) != len(each[0])
@@ -318,9 +317,9 @@ def _holding(near: list[tuple[float, float, float]], value: float | None, u95: f
 def _digits(rows: SweepRows, component: str, length: float, x: Array) -> Array:
     """Primed standard errors by the last printed digit of readings at settings (n,); zero where a table has all digits."""
     table = rows.table
-    if component not in table.rounding:
+    if component not in table.digits:
         return np.zeros(len(x))
-    every = table.primed_force(component, length, table.rounding[component])[rows.rows]
+    every = table.primed_force(component, length, table.digits[component])[rows.rows]
     return np.asarray(every[np.argmin(np.abs(rows.x[rows.rows] - x[:, None]), axis=1)])
 
 
@@ -363,6 +362,11 @@ def _no_symmetry(sweep: Sweep) -> Finding:
         "symmetry.withdrawn", f"{sweep.campaign} {primed(sweep.symbol)}", Severity.WARN, statistic=value, u95=u95, value=sweep.value,
         own=sweep.u95, table=sweep.table,
     )  # fmt: skip
+
+
+def _angle_across(table: ForceTable, variable: str) -> str:
+    at = held(table, variable)
+    return f"{ACROSS[variable][1]} = {np.degrees(at):.4g} deg" if at else ""
 
 
 def _held(sweeps: Sequence[Sweep]) -> Iterator[Finding]:

@@ -166,8 +166,8 @@ class ForceTable:
         What is assumed of it or left out; they travel with every number that comes of it.
     propeller : dict of str to (n,) array
         ``rps`` in rad/s, ``J``, ``thrust`` in N, where the table has them.
-    rounding : mapping of str to (n,) array
-        Standard errors of forces by the last printed digit of their column; empty where the file has all digits.
+    rounding : mapping of str to (2, n) array
+        Forces, and their standard errors by the last printed digit of their column; see `digits`.
     model_mass : float or None
         Of the model, kg, where its campaign states an inertia to be subtracted.
     """
@@ -241,6 +241,12 @@ class ForceTable:
     def water_density(self) -> float | Array:
         """Of each row where the table has it, (n,), else of the conditions; kg/m^3."""
         return self.conditions.density if self.density is None else self.density
+
+    @property
+    def digits(self) -> dict[str, Array]:
+        """Standard errors of forces by their last printed digit, (n,) each; none of other numbers than those that were read."""
+        read = {c: r for c, r in self.rounding.items() if c in self.forces and np.any(r[1])}
+        return {c: r[1] for c, r in read.items() if np.array_equal(r[0], self.forces[c], equal_nan=True)}
 
     @property
     def run_at(self) -> str:
@@ -378,10 +384,12 @@ class ForceTable:
             forces[component] = np.asarray(sum(self.forces[c] * k for c, k in needed))
             usable[component] = np.logical_and.reduce([self.usable[c] for c, _ in needed])
             exclusions += self._passed_on(component, [c for c, _ in needed if c != component])
-            for moved, known in ((errors, self.errors), (rounding, self.rounding)):
+            for moved, known in ((errors, self.errors), (rounding, self.digits)):
                 moved.pop(component, None)
                 if all(c in known for c, _ in needed):
                     moved[component] = np.asarray(sum(known[c] * abs(k) for c, k in needed))
+            if component in rounding:
+                rounding[component] = np.stack([forces[component], rounding[component]])
         return replace(
             self,
             motion=dict(zip(MOTIONS, nu.T, strict=True)),

@@ -91,7 +91,7 @@ def force_table(columns: Columns, campaign: Campaign, table: TableDeclaration) -
         speed=columns.speed,
         forces=forces,
         errors=errors,
-        rounding=rounding,
+        rounding={c: np.stack([forces[c], error]) for c, error in rounding.items() if c in forces},
         usable=usable,
         exclusions=exclusions,
         labels=columns.row_labels or tuple(f"line {line}" for line in columns.lines),

@@ -168,7 +168,7 @@ def collect(tables: Sequence[ForceTable], variables: Sequence[str], name: str, a
         for v in variables:
             xs[v].append(variable(table, v, area.length)[usable])
         ys.append(y[usable])
-        _, digits, _ = response(replace(table, errors=table.rounding), name, area)
+        _, digits, _ = response(replace(table, errors=table.digits), name, area)
         for known, own in ((errors, error), (rounding, digits)):
             known.append(None if own is None else own[usable])
         labels += [t for t, u in zip(table.labels, usable, strict=True) if u]
