@@ -366,7 +366,8 @@ class ForceTable:
             return self
         nu = np.column_stack([self.motion[m] for m in MOTIONS]) @ velocity_transfer(shift).T
         transfer = force_transfer(shift)
-        forces, errors, rounding, usable = map(dict, (self.forces, self.errors, self.rounding, self.usable))
+        forces, errors, usable = dict(self.forces), dict(self.errors), dict(self.usable)
+        rounding = dict(self.rounding)
         exclusions, notes = list(self.exclusions), [f"moments moved by ({', '.join(f'{s:+.6g}' for s in shift)}) m"]
         for i, component in enumerate(COMPONENTS):
             needed = [(c, transfer[i, j]) for j, c in enumerate(COMPONENTS) if transfer[i, j] != 0.0]

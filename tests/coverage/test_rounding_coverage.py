@@ -24,7 +24,7 @@ def test_every_cell_covers(rows: list[dict[str, str]]) -> None:
     assert min(float(r["without %"]) for r in rows) < 40.0
 
 
-@pytest.mark.parametrize("cell", [CELLS.index(c) for c in ((("even", 13), 0.0, 0.2), (("even", 9), 0.01, 0.1))])
+@pytest.mark.parametrize("cell", [CELLS.index(c) for c in ((("even", 13), 0.0, 0.2), (("one-sided", 9), 0.01, 0.1))])
 def test_few_campaigns_cover(cell: int) -> None:
     error, before, after = run(cell, 40).T
     assert np.mean(error <= after) >= 0.9
@@ -45,7 +45,8 @@ def test_a_campaign_of_the_study_is_what_a_fit_prints() -> None:
         told = origin_slope.estimate(x, y[k], np.full(len(x), digit[k]))
         if np.all(told.used):
             same += 1
-            assert (abs(o.value - true[k]), o.u95, np.hypot(o.u95, part)) == pytest.approx((error[k], before[k], after[k]))
+            found = abs(o.value - true[k]), o.u95, np.hypot(o.u95, part)
+            assert found == pytest.approx((error[k], before[k], after[k]), rel=1e-3)
     assert same
 
 
