@@ -14,7 +14,7 @@ with the speed beyond it.
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
@@ -29,12 +29,15 @@ from coeflab.core.types import Array
 from coeflab.fits.results.fit_result import FitResult, LeftOut, Sensitivity, Sweep, independent, result_of
 from coeflab.fits.rows.straight_runs import resistance
 from coeflab.fits.rows.sweeps import (
+    ACROSS,
+    ACROSS_AT,
     FEWEST_SETTINGS,
     INCIDENCE,
     JUMPED,
     STALLED,
     arm_shift,
     collect_points,
+    held,
     one_size,
     sweep_rows,
 )
@@ -272,7 +275,13 @@ def _sweep(
         symmetry=plane,
         withdrawn=withdrawn,
         by_symmetry=rows.table.by_symmetry,
+        held=_angle_across(rows.table, variable),
         bias=bias,
+        rounding=0.0
+        if value is None or u95 is None or len(x) != len(each[0])
+        else slopes.by_digits(
+            *each, _digits(rows, component, length, x), target, origin.noise, bool(plane), odd, value, u95
+        ),
         borrowed=rows.rest[0].name if rows.rest is not None and component in rows.rest[0].forces and not odd else "",
     )
     return sweep, origin
@@ -289,9 +298,9 @@ def _nearest(
     out, size = [], np.abs(x)
     half = float(np.max(size, initial=0.0)) / 2.0
     while half and len(np.unique(np.round(x[inside := size <= half] / half, 2))) >= NEAR:
-        o = origin_slope.estimate(x[inside], y[inside], None if se is None else se[inside], odd=odd)
-        mean, width = origin_slope.curve(o, np.zeros(1))
-        value, u95, _ = slopes.determined(o, target, middle, (float(mean[0]), float(width[0])), plane)
+        value, u95 = slopes.of_rows(
+            x[inside], y[inside], None if se is None else se[inside], target, middle, plane, odd
+        )
         if value is not None and u95 is not None:
             out.append((half, value, u95))
         half /= 2.0
@@ -303,6 +312,15 @@ def _holding(near: list[tuple[float, float, float]], value: float | None, u95: f
     if value is None or u95 is None:
         return u95
     return max([u95, *(abs(v - value) + u for _, v, u in near if abs(v - value) > np.hypot(u, u95))])
+
+
+def _digits(rows: SweepRows, component: str, length: float, x: Array) -> Array:
+    """Primed standard errors by the last printed digit of readings at settings (n,); zero where a table has all digits."""
+    table = rows.table
+    if component not in table.digits:
+        return np.zeros(len(x))
+    every = table.primed_force(component, length, table.digits[component])[rows.rows]
+    return np.asarray(every[np.argmin(np.abs(rows.x[rows.rows] - x[:, None]), axis=1)])
 
 
 def _random(origin: OriginSlope, moved: Array, u95: float | None) -> float | None:
@@ -346,6 +364,18 @@ def _no_symmetry(sweep: Sweep) -> Finding:
     )  # fmt: skip
 
 
+def _angle_across(table: ForceTable, variable: str) -> str:
+    at = held(table, variable)
+    return f"{ACROSS[variable][1]} = {np.degrees(at):.4g} deg" if at else ""
+
+
+def _held(sweeps: Sequence[Sweep]) -> Iterator[Finding]:
+    """Which slopes are those at an angle of the other plane, a warning for each."""
+    for table, at in dict.fromkeys((s.table, s.held) for s in sweeps if s.held and s.value is not None):
+        symbols = [primed(s.symbol) for s in sweeps if (s.table, s.held) == (table, at) and s.value is not None]
+        yield Finding.of(ACROSS_AT, table, Severity.WARN, at=at, symbols=symbols)
+
+
 def _moved(shift: float, table: ForceTable) -> dict[str, str]:
     """Of a table about the point of its sweeps, ``shift`` forward of the point of the coefficients."""
     return {"swept about": point_in_words(table.reference_point, table.datum)} if shift else {}
@@ -374,6 +404,7 @@ def _coefficient(sweep: Sweep, citation: str) -> Coefficient:
         campaign=sweep.campaign,
         estimator=estimator[sweep.target]
         + (f" without point {out}" if out else "")
+        + (f", at {sweep.held}" if sweep.held else "")
         + (f", with the rest row of {sweep.borrowed}" if sweep.borrowed else "")
         + (f", not run: {sweep.by_symmetry} turned by symmetry" if sweep.by_symmetry else ""),
         window=sweep.window,
@@ -435,17 +466,18 @@ def _jobs(tables: Sequence[ForceTable], length: float) -> dict[str, tuple[SweepR
     out: dict[str, tuple[SweepRows, str, str, str]] = {}
     most: dict[str, tuple[bool, int]] = {}
     for variable, odd in ODD.items():
-        for table in (t for t in tables if variable in t.varies):
+        for table in (t for t in tables if variable in t.varies and not held(t, ACROSS.get(variable, ("", ""))[0])):
             rows = sweep_rows(table, variable, tables, length)
             wanted = [(c, f"{c}{variable}", "odd") for c in odd]
-            for c in EVEN.get(variable, ""):
+            at = held(table, variable)
+            for c in EVEN.get(variable, "") if not at else "":
                 wanted += [(c, f"{c}0", "even"), (c, f"{c}{variable}{variable}", "even")]
             for component, symbol, parity in wanted:
                 if component not in table.forces:
                     continue
                 usable = table.usable[component][rows.rows]
                 settings = len(np.unique(levels(rows.x[rows.rows][usable])))
-                rank = (settings >= FEWEST_SETTINGS and not table.by_symmetry, settings)
+                rank = (settings >= FEWEST_SETTINGS and not table.by_symmetry and not at, settings)
                 if rank > most.get(symbol, (False, -1)):
                     out[symbol], most[symbol] = (rows, variable, component, parity), rank
     return out
@@ -527,6 +559,7 @@ def fit(tables: Sequence[ForceTable], scaling: Scaling, options: Mapping[str, An
         covariance = independent([covariance, np.array([[own]])])
     result = result_of(
         "slope_at_origin", first, scaling, coefficients, covariance, citations=citations, settings=_moved(shift, first),
-        sweeps=tuple(sweeps), straight=straight, findings=(*(_no_symmetry(s) for s in sweeps if s.withdrawn is not None), *compared),
+        sweeps=tuple(sweeps), straight=straight,
+        findings=(*(_no_symmetry(s) for s in sweeps if s.withdrawn is not None), *compared, *_held(sweeps)),
     )  # fmt: skip
     return replace(result, coefficients=result.coefficients.about(wanted))

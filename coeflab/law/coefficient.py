@@ -85,14 +85,15 @@ class Parts:
         Reserved for a separately assessed window part.
     input : float or None
         What enters from outside the points: declared uncertainty of angle, speed, calibration, lengths, and the grid
-        error of a computation with a grid study; in a term tied to a slope, that of the slope.
+        error of a computation with a grid study; the rounding of printed digits; in a term tied to a slope, that of the slope.
     """
 
     random: Annotated[NotNegative | None, Means("scatter of the points", "1")] = None
     model_form: Annotated[NotNegative | None, Means("what other forms of the curve would give", "1")] = None
     window: Annotated[NotNegative | None, Means("choice of the window, where it is assessed by itself", "1")] = None
     input: Annotated[
-        NotNegative | None, Means("declared uncertainty of angle, speed, calibration and length; grid error", "1")
+        NotNegative | None,
+        Means("declared uncertainty of angle, speed, calibration and length; grid error; printed digits", "1"),
     ] = None
 
 

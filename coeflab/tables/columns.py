@@ -15,6 +15,9 @@ from coeflab.core.errors import InputError, together
 from coeflab.core.texts import input_error
 from coeflab.core.types import Array, brief
 
+FEWEST = 3  # numbers that show the last digit of their column
+MOST_DIGITS, SAME = 9, 1e-12  # behind the point; of the largest number: what a conversion leaves
+
 
 @brief
 @dataclass(frozen=True, slots=True, eq=False)
@@ -40,6 +43,8 @@ class Columns:
     forces, errors : dict of str to array
         X Y Z K M N and their standard errors, N and N m; NaN where blank. Of ``drag``, ``lift`` (up) and ``side`` (to
         starboard), along and across the flow, `in_body_axes` makes X, Y and Z.
+    rounding : dict of str to array
+        Standard errors of the forces by the last digit that the file prints of them (`rounded_to`); none of a full-precision column.
     labels : dict of str to list of str
     doubtful : tuple of frozenset of str
         For every row the plain names of columns whose digits are doubtful in the source.
@@ -72,6 +77,7 @@ class Columns:
     radius: Array | None = None
     density: Array | None = None
     propeller: Mapping[str, Array] = field(default_factory=dict)
+    rounding: Mapping[str, Array] = field(default_factory=dict)
 
     def __len__(self) -> int:
         return len(self.lines)
@@ -134,6 +140,32 @@ class Columns:
             if (row := first_row(~(values > 0.0) & ~unused)) is not None:
                 found = "a blank cell" if np.isnan(values[row]) else f"{values[row]:g}"
                 yield self.fail("tables.standard_error_of_row", row=row, name=f"se_{name}", found=found)
+
+
+def rounded_to(numbers: Array) -> float:
+    """Standard error of numbers (n,) that were rounded to one last digit: that digit over the root of 12, uniform; zero where they show none.
+
+    The digit is the coarsest of 1, 0.1, 0.01 ... whose multiples they all are. Zeros behind a point are lost where numbers are no text: that
+    `FEWEST` numbers all end in one by chance is one in a thousand.
+
+    Parameters
+    ----------
+    numbers : (n,) array
+        As printed, NaN where blank.
+
+    Examples
+    --------
+    >>> round(rounded_to(np.array([0.1, 0.095, -0.012])) * 12.0**0.5, 6), rounded_to(np.array([1.0, 2.0, 1.0 / 3.0]))
+    (0.001, 0.0)
+    """
+    known = numbers[np.isfinite(numbers)]
+    size = float(np.max(np.abs(known), initial=0.0))
+    if len(known) < FEWEST or size == 0.0:
+        return 0.0
+    for digits in range(MOST_DIGITS + 1):
+        if np.all(np.abs(known - np.round(known, digits)) <= SAME * size):
+            return float(10.0**-digits / 12.0**0.5)
+    return 0.0
 
 
 def first_row(where: NDArray[np.bool_]) -> int | None:

@@ -170,6 +170,8 @@ class ForceTable:
         What is assumed of it or left out; they travel with every number that comes of it.
     propeller : dict of str to (n,) array
         ``rps`` in rad/s, ``J``, ``thrust`` in N, where the table has them.
+    rounding : mapping of str to (2, n) array
+        Forces, and their standard errors by the last printed digit of their column; see `digits`.
     model_mass : float or None
         Of the model, kg, where its campaign states an inertia to be subtracted.
     """
@@ -210,9 +212,10 @@ class ForceTable:
     findings: tuple[Finding, ...] = ()
     propeller: Mapping[str, Array] = field(default_factory=dict)
     model_mass: float | None = None
+    rounding: Mapping[str, Array] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
-        for name in ("motion", "controls", "forces", "errors", "propeller"):
+        for name in ("motion", "controls", "forces", "errors", "propeller", "rounding"):
             object.__setattr__(self, name, locked_columns(getattr(self, name)))
         object.__setattr__(self, "usable", locked_columns(self.usable, bool))
         object.__setattr__(self, "speed", locked(self.speed))
@@ -246,6 +249,12 @@ class ForceTable:
         return self.conditions.density if self.density is None else self.density
 
     @property
+    def digits(self) -> dict[str, Array]:
+        """Standard errors of forces by their last printed digit, (n,) each; none of other numbers than those that were read."""
+        read = {c: r for c, r in self.rounding.items() if c in self.forces and np.any(r[1])}
+        return {c: r[1] for c, r in read.items() if np.array_equal(r[0], self.forces[c], equal_nan=True)}
+
+    @property
     def run_at(self) -> str:
         """Speed and density of the rows in words, a range where they differ."""
         speed, density = (_range(np.atleast_1d(v)) for v in (self.speed, self.water_density))
@@ -263,8 +272,9 @@ class ForceTable:
         if self.density is None:
             return self
         ratio = self.conditions.density / self.density
-        forces, errors = ({c: v * ratio for c, v in x.items()} for x in (self.forces, self.errors))
-        return replace(self, forces=forces, errors=errors, density=None)
+        own = (self.forces, self.errors, self.rounding)
+        forces, errors, rounding = ({c: v * ratio for c, v in x.items()} for x in own)
+        return replace(self, forces=forces, errors=errors, rounding=rounding, density=None)
 
     @property
     def setting(self) -> NDArray[np.intp]:
@@ -363,6 +373,7 @@ class ForceTable:
         nu = np.column_stack([self.motion[m] for m in MOTIONS]) @ velocity_transfer(shift).T
         transfer = force_transfer(shift)
         forces, errors, usable = dict(self.forces), dict(self.errors), dict(self.usable)
+        rounding = dict(self.rounding)
         exclusions, notes = list(self.exclusions), [f"moments moved by ({', '.join(f'{s:+.6g}' for s in shift)}) m"]
         for i, component in enumerate(COMPONENTS):
             needed = [(c, transfer[i, j]) for j, c in enumerate(COMPONENTS) if transfer[i, j] != 0.0]
@@ -374,20 +385,24 @@ class ForceTable:
                 )
                 del forces[component], usable[component]
                 errors.pop(component, None)
+                rounding.pop(component, None)
                 exclusions = [e for e in exclusions if e.component != component]
                 continue
             forces[component] = np.asarray(sum(self.forces[c] * k for c, k in needed))
             usable[component] = np.logical_and.reduce([self.usable[c] for c, _ in needed])
             exclusions += self._passed_on(component, [c for c, _ in needed if c != component])
-            if all(c in self.errors for c, _ in needed):
-                errors[component] = np.asarray(sum(self.errors[c] * abs(k) for c, k in needed))
-            else:
-                errors.pop(component, None)
+            for moved, known in ((errors, self.errors), (rounding, self.digits)):
+                moved.pop(component, None)
+                if all(c in known for c, _ in needed):
+                    moved[component] = np.asarray(sum(known[c] * abs(k) for c, k in needed))
+            if component in rounding:
+                rounding[component] = np.stack([forces[component], rounding[component]])
         return replace(
             self,
             motion=dict(zip(MOTIONS, nu.T, strict=True)),
             forces=forces,
             errors=errors,
+            rounding=rounding,
             usable=usable,
             exclusions=tuple(exclusions),
             reference_point=np.asarray(point, dtype=float),

@@ -29,7 +29,7 @@ from coeflab.tables.column_map import (
     share,
     unturned,
 )
-from coeflab.tables.columns import Columns
+from coeflab.tables.columns import Columns, rounded_to
 from coeflab.tables.dialect import Marks
 from coeflab.tables.force_table import ForceTable
 from coeflab.tables.importers import IMPORTERS
@@ -329,25 +329,30 @@ def _columns(raw: RawTable, known: Sequence[Assigned], campaign: Campaign) -> Co
     rows = usable_rows(raw, known)
     if not rows.size:
         raise input_error("tables.no_row_with_settings", raw.path)
-    given: dict[str, dict[str, Array]] = {r: {} for r in (*SETTINGS, "error", "force", "propeller")}
+    given: dict[str, dict[str, Array]] = {r: {} for r in (*SETTINGS, "error", "force", "propeller", "rounding")}
     primes: dict[str, Array] = {}
     for one in known:
         if one.meaning.role in given:
             values = one.values[rows]
             given[one.meaning.role][one.meaning.name] = values
+            if one.meaning.role == "force":
+                last = rounded_to(one.column.values) * abs(one.factor)
+                given["rounding"][one.meaning.name] = np.full(len(rows), last)
             if one.meaning.primed and one.meaning.role == "velocity":
                 primes[one.meaning.name] = values
     own = {name: values for name, values in given["velocity"].items() if name not in primes}
     speed = speed_of_rows(given["speed"].get("U"), own, primes, campaign, len(rows), bool(given["angle"]))
     density = given["density"].get("density", np.full(len(rows), campaign.conditions.density))
     for one in known:
-        if one.meaning.per_speed:
-            given[one.meaning.role][one.meaning.name] = given[one.meaning.role][one.meaning.name] * speed**2
+        unit = speed**2 if one.meaning.per_speed else np.ones(len(rows))
         if one.meaning.pure:
-            unit = campaign.scaling.unit(one.meaning.component, density, speed)
-            if one.meaning.area:
-                unit = 0.5 * density * speed**2 * one.meaning.area * (one.meaning.length or 1.0)
-            given[one.meaning.role][one.meaning.name] = given[one.meaning.role][one.meaning.name] * unit
+            of_area = 0.5 * density * speed**2 * one.meaning.area * (one.meaning.length or 1.0)
+            unit = unit * (
+                of_area if one.meaning.area else campaign.scaling.unit(one.meaning.component, density, speed)
+            )
+        if one.meaning.per_speed or one.meaning.pure:
+            for role in (one.meaning.role, *(["rounding"] if one.meaning.role == "force" else [])):
+                given[role][one.meaning.name] = given[role][one.meaning.name] * unit
     lines = raw.lines[rows] if len(raw.lines) else rows + 1
     point = next((texts_of(one.column) for one in known if one.meaning.name == "point"), list(raw.row_labels))
     if not point and not len(raw.lines):
@@ -366,6 +371,7 @@ def _columns(raw: RawTable, known: Sequence[Assigned], campaign: Campaign) -> Co
         speed=speed,
         forces=given["force"],
         errors=given["error"],
+        rounding=given["rounding"],
         labels={one.column.name: _taken(texts_of(one.column), rows) for one in known if one.meaning.name == "label"},
         doubtful=tuple(frozenset(n for n, mask in blank.items() if mask[i]) | words[row] for i, row in enumerate(rows)),
         row_labels=tuple(_taken(point, rows)) if point else (),

@@ -59,7 +59,9 @@ def force_table(columns: Columns, campaign: Campaign, table: TableDeclaration) -
     if table.contains_thrust is not False:
         exclusions = (*exclusions, *_driven(columns, usable))
     forces = {c: sign * columns.forces[s] for c, (s, sign) in sources.items() if s in columns.forces}
-    errors = {c: columns.errors[s] for c, (s, _) in sources.items() if s in columns.errors}
+    errors, rounding = (
+        {c: x[s] for c, (s, _) in sources.items() if s in x} for x in (columns.errors, columns.rounding)
+    )
     if columns.radius is not None:
         notes.append(f"rates from U and R, centre of the circle: {table.centre}")
     if table.arm_point is not None and np.any(table.arm_point != point):
@@ -74,7 +76,7 @@ def force_table(columns: Columns, campaign: Campaign, table: TableDeclaration) -
         notes.append(halved)
     if (cut := cut_of(half)) is not None:
         _require_symmetry(columns, cut, forces, motion)
-        forces, errors = ({c: 2.0 * v for c, v in x.items()} for x in (forces, errors))
+        forces, errors, rounding = ({c: 2.0 * v for c, v in x.items()} for x in (forces, errors, rounding))
     turns = any(np.any(motion[m] != 0.0) for m in ANGULAR)
     subtracted = turns and bool(table.contains_inertia) and campaign.inertia is not None
     if subtracted and campaign.inertia is not None:
@@ -90,6 +92,7 @@ def force_table(columns: Columns, campaign: Campaign, table: TableDeclaration) -
         speed=columns.speed,
         forces=forces,
         errors=errors,
+        rounding={c: np.stack([forces[c], error]) for c, error in rounding.items() if c in forces},
         usable=usable,
         exclusions=exclusions,
         labels=columns.row_labels or tuple(f"line {line}" for line in columns.lines),

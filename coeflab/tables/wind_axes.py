@@ -63,7 +63,8 @@ def in_body_axes(columns: Columns, axes: Axes, linear: Array) -> Columns:
             of_y = {"drag": -along / cos_b, y: -y_sign * along * sin_b / cos_b}
             parts[part] = of_y | {"lift": parts[part]["lift"]}
     moved = {name: value for name, value in columns.forces.items() if name not in WIND}
-    errors = {name: value for name, value in columns.errors.items() if name not in WIND}
+    read = (columns.errors, columns.rounding)
+    errors, rounding = ({name: value for name, value in x.items() if name not in WIND} for x in read)
     headers, doubtful = dict(columns.headers), [set(words) for words in columns.doubtful]
     for part, of in result.items():
         if of not in columns.forces:
@@ -77,12 +78,20 @@ def in_body_axes(columns: Columns, axes: Axes, linear: Array) -> Columns:
             )  # fmt: skip
         own, sign = sources[part]
         moved[own] = sign * np.asarray(sum(k * columns.forces[name] for name, k in needed.items()))
-        if all(name in columns.errors for name in needed):
-            errors[own] = np.asarray(sum(np.abs(k) * columns.errors[name] for name, k in needed.items()))
+        for moved_errors, known in zip((errors, rounding), read, strict=True):
+            if all(name in known for name in needed):
+                moved_errors[own] = np.asarray(sum(np.abs(k) * known[name] for name, k in needed.items()))
         headers[own] = headers.get(of, of)
         for row, words in enumerate(columns.doubtful):
             doubtful[row] |= {own} if words & set(needed) else set()
-    return replace(columns, forces=moved, errors=errors, headers=headers, doubtful=tuple(map(frozenset, doubtful)))
+    return replace(
+        columns,
+        forces=moved,
+        errors=errors,
+        rounding=rounding,
+        headers=headers,
+        doubtful=tuple(map(frozenset, doubtful)),
+    )
 
 
 def _wind_complaints(columns: Columns, own: Mapping[str, str]) -> Iterator[InputError]:

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from coeflab.core.errors import InputError
 from coeflab.core.types import dataclass
 from coeflab.fits.results.set_aside import SetAside, joined
-from coeflab.fits.rows.regression import Area, Rows, collect, response, variable
+from coeflab.fits.rows.regression import Area, Rows, all_known, collect, response, variable
 from coeflab.fits.rows.too_few import TooFewRowsError
 from coeflab.fits.statistics.least_squares import Index
 from coeflab.law.symbols import COMPONENTS
@@ -154,18 +154,19 @@ def _only(rows: Rows, keep: NDArray[np.bool_]) -> Rows:
         x={v: x[keep] for v, x in rows.x.items()},
         y=rows.y[keep],
         errors=None if rows.errors is None else rows.errors[keep],
+        rounding=None if rows.rounding is None else rows.rounding[keep],
         labels=tuple(t for t, k in zip(rows.labels, keep, strict=True) if k),
     )
 
 
 def _joined(parts: Sequence[Rows], tables: Sequence[ForceTable]) -> Rows:
-    errors = [p.errors for p in parts if p.errors is not None]
     alone = len({t.campaign for t in tables}) == 1
     return replace(
         parts[0],
         x={v: np.concatenate([p.x[v] for p in parts]) for v in parts[0].x},
         y=np.concatenate([p.y for p in parts]),
-        errors=np.concatenate(errors) if len(errors) == len(parts) else None,
+        errors=all_known([p.errors for p in parts]),
+        rounding=all_known([p.rounding for p in parts]),
         labels=tuple(t if alone else f"{p.campaign} {t}" for p in parts for t in p.labels),
         tables=tuple(t for p in parts for t in p.tables),
         campaign=joint_name(t.campaign for t in tables),

@@ -98,6 +98,10 @@ class Sweep:
         What a declared symmetry would give that the points rule out.
     by_symmetry : str
         Table whose rows these are, turned by a declared symmetry; empty for rows that were run.
+    held : str
+        Angle of the other plane that all rows have, as ``beta = 4 deg``; empty at none.
+    rounding : float
+        95 % half-width of the value by the rounding of printed digits; not in ``u95``.
     bias : float
         Primed force of the rows at rest, which a declared symmetry says is zero; what it does to the value is in U95.
     """
@@ -137,6 +141,8 @@ class Sweep:
     by_symmetry: str = ""
     withdrawn: tuple[float, float] | None = None
     bias: float = 0.0
+    held: str = ""
+    rounding: float = 0.0
 
     @property
     def is_angle(self) -> bool:

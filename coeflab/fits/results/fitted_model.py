@@ -23,6 +23,8 @@ from coeflab.law.symbols import ANGULAR
 from coeflab.law.terms import Term, design
 from coeflab.tables.force_table import AT_REST, SAME_SIZE
 
+DIGITS = "rounding of the printed digits"  # what a table leaves out behind its last digit
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 @locking("x shared y")
@@ -53,13 +55,15 @@ class FittedModel:
         True when the terms were chosen by looking at the same data; intervals are then too narrow.
     shared : mapping of str to (p,) array
         Errors that all rows share, each as the signed 95 % shift that it gives to every coefficient: the grid, declared
-        angles, speeds, calibrations.
+        angles, speeds, calibrations; under `DIGITS` the half-widths by `rounding`, which goes along with the scatter.
     not_assessed : tuple of str
         What may act and is in no half-width, in words; filled in by the budget.
     set_aside : SetAside or None
         Printed rows that are rejected or doubtful.
     remainder : Remainder or None
         What the residuals say of the form; None where it was not asked.
+    rounding : (p,) array or None
+        95 % half-widths by the last printed digit of the rows; None where these have all digits. The budget takes it into ``shared``.
     """
 
     response: str
@@ -81,6 +85,7 @@ class FittedModel:
     not_assessed: tuple[str, ...] = ()
     set_aside: SetAside | None = None
     remainder: Remainder | None = None
+    rounding: Array | None = None
 
     @property
     def n_points(self) -> int:
@@ -98,13 +103,13 @@ class FittedModel:
 
         NaN where there is no half-width.
         """
-        standard = self.fit.half_width / 2.0
+        standard = np.hypot(self.fit.half_width, self.shared.get(DIGITS, 0.0)) / 2.0
         out = self.fit.correlation * np.outer(standard, standard)
         np.fill_diagonal(out, standard**2)
         if self.remainder is not None:
             out = out + self.remainder.covariance / 4.0
             out[self.remainder.rejected, :] = out[:, self.remainder.rejected] = np.nan
-        for shift in self.shared.values():
+        for shift in (s for name, s in self.shared.items() if name != DIGITS):
             out = out + np.outer(shift, shift) / 4.0
         return np.asarray((out + out.T) / 2.0)
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,6 +15,8 @@ from coeflab.fits.results.fitted_model import FittedModel, in_words
 from coeflab.fits.results.lack_of_fit import ROUNDING
 from coeflab.fits.results.set_aside import SetAside, joined, readmitted
 from coeflab.fits.rows.too_few import TooFewRowsError
+from coeflab.fits.statistics import printed_digits
+from coeflab.fits.statistics.cross_validation import constrained_space
 from coeflab.fits.statistics.linear_model import LinearFit, fit_linear
 from coeflab.fits.statistics.remainder import Block, Remainder, judged, left_out
 from coeflab.law.domain import Domain, Extrapolation
@@ -64,6 +67,8 @@ class Rows:
     campaign, body : str
     set_aside : SetAside or None
         Printed rows that are rejected or doubtful.
+    rounding : (n,) array or None
+        Standard errors of y by its last printed digit; None where a row has all digits.
     """
 
     x: Mapping[str, Array]
@@ -75,6 +80,7 @@ class Rows:
     campaign: str
     body: str
     set_aside: SetAside | None = None
+    rounding: Array | None = None
 
 
 def variable(table: ForceTable, name: str, length: float) -> Array:
@@ -150,7 +156,7 @@ def collect(tables: Sequence[ForceTable], variables: Sequence[str], name: str, a
     """
     xs: dict[str, list[Array]] = {v: [] for v in variables}
     ys: list[Array] = []
-    errors: list[Array | None] = []
+    errors, rounding = list[Array | None](), list[Array | None]()
     labels: list[str] = []
     names: list[str] = []
     set_aside: list[SetAside] = []
@@ -162,24 +168,32 @@ def collect(tables: Sequence[ForceTable], variables: Sequence[str], name: str, a
         for v in variables:
             xs[v].append(variable(table, v, area.length)[usable])
         ys.append(y[usable])
-        errors.append(None if error is None else error[usable])
+        _, digits, _ = response(replace(table, errors=table.digits), name, area)
+        for known, own in ((errors, error), (rounding, digits)):
+            known.append(None if own is None else own[usable])
         labels += [t for t, u in zip(table.labels, usable, strict=True) if u]
         names.append(table.name)
         set_aside += [] if not table.exclusions else [_set_aside_rows(table, variables, name, area, usable)]
     if not ys or not sum(map(len, ys)):
         raise InputError(f"no usable rows for {name}", "a table with that component", column="responses")
-    known = [e for e in errors if e is not None]
     return Rows(
         x={v: np.concatenate(parts) for v, parts in xs.items()},
         y=np.concatenate(ys),
-        errors=np.concatenate(known) if len(known) == len(errors) else None,
+        errors=all_known(errors),
         labels=tuple(labels),
         response=name,
         tables=tuple(names),
         campaign=tables[0].campaign,
         body=tables[0].body,
         set_aside=joined(set_aside),
+        rounding=all_known(rounding),
     )
+
+
+def all_known(parts: Sequence[Array | None]) -> Array | None:
+    """Errors of the rows of several tables as one array; None where a table has none."""
+    known = [p for p in parts if p is not None]
+    return np.concatenate(known) if len(known) == len(parts) else None
 
 
 def _set_aside_rows(
@@ -242,7 +256,18 @@ def model_of(
         post_selection=post_selection,
         set_aside=rows.set_aside,
         remainder=_remainder(fit, matrix, rows, terms, errors, constraint, lines=lines),
+        rounding=rounding_of(matrix, rows, fit, errors, constrained_space(constraint, len(terms))[1]),
     )
+
+
+def rounding_of(matrix: Array, rows: Rows, fit: LinearFit, errors: Array | None, free: Array) -> Array | None:
+    """(p,) 95 % half-widths by the last printed digit, None where that is not known; ``free`` (p, q) spans what a constraint leaves."""
+    if rows.rounding is None:
+        return None
+    root = np.ones(len(rows.y)) if errors is None else 1.0 / errors
+    by_row = free @ np.linalg.pinv((matrix @ free) * root[:, None]) * root
+    noise = fit.rms * np.sqrt(len(rows.y) / max(len(rows.y) - fit.rank, 1))
+    return printed_digits.half_width(by_row, rows.rounding, noise)
 
 
 def _remainder(

@@ -11,9 +11,13 @@ from coeflab.core.types import Array, dataclass
 from coeflab.fits.results.fit_result import LeftOut, Sweep
 from coeflab.fits.statistics.diagnostics import levels
 from coeflab.fits.statistics.slopes import is_one_sided
+from coeflab.law.symbols import LINEAR
+from coeflab.law.transforms import incidence
 from coeflab.tables.force_table import AT_REST, SAME_SIZE, ForceTable
 
 INCIDENCE = {"dr": "v", "ds": "w", "db": "w"}
+ACROSS_AT = "sweep.held"
+ACROSS = {"v": ("w", "alpha"), "w": ("v", "beta")}  # what a sweep of one angle may hold at another than zero
 ASTERN = "moves astern (u <= 0): an angle beyond 90 degrees, or degrees declared as radians?"
 STALLED = "past stall: the force across the flow falls again"
 JUMPED = "beyond a jump of its reading"
@@ -37,11 +41,22 @@ class SweepRows:
     astern: NDArray[np.intp]
 
 
+def held(table: ForceTable, variable: str) -> float:
+    """Angle, rad, at which every row of a sweep of ``variable`` holds the other one, drift or attack; zero where it holds none."""
+    if variable not in ACROSS:
+        return 0.0
+    other = incidence(*(np.asarray(table.motion[m]) for m in LINEAR))[("alpha", "beta").index(ACROSS[variable][1])]
+    several = _settings(table.primed_motion(variable, table.scaling.length)) >= FEWEST_SETTINGS
+    still = float(np.ptp(other)) <= AT_REST < float(np.min(np.abs(other)))
+    return float(np.mean(other)) if several and still else 0.0
+
+
 def _others_at_rest(table: ForceTable, variable: str, length: float) -> NDArray[np.bool_]:
-    """Rows in which nothing but surge and ``variable`` moves (control sweeps: within 0.3 degrees of zero incidence)."""
+    """Rows in which nothing but surge and ``variable`` moves, or what they hold (control sweeps: within 0.3 degrees of zero incidence)."""
     keep = np.ones(len(table), dtype=bool)
+    holds = ACROSS[variable][0] if held(table, variable) else ""
     for name in ("v", "w", "p", "q", "r", *table.controls):
-        if name != variable:
+        if name not in (variable, holds):
             limit = NEAR_ZERO if INCIDENCE.get(variable) == name else AT_REST
             keep &= np.abs(table.primed_motion(name, length)) <= limit
     return keep
@@ -58,7 +73,7 @@ def sweep_rows(table: ForceTable, variable: str, tables: Sequence[ForceTable], l
     keep &= ahead
     x = table.primed_motion(variable, length)
     rest = None
-    if is_one_sided(x[keep]) and not np.any(keep & (np.abs(x) <= AT_REST)):
+    if is_one_sided(x[keep]) and not held(table, variable) and not np.any(keep & (np.abs(x) <= AT_REST)):
         for other in tables:
             still = _others_at_rest(other, "", length)
             if other is not table and np.any(still) and np.allclose(other.speed[still], table.speed.mean(), rtol=0.01):

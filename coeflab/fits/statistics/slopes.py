@@ -62,6 +62,7 @@ EVEN = (
     Family("{x}^2 + {x}^4", ("1", "x2", "x4")),
     Family("{x}^2 + |{x}|^3", ("1", "x2", "|x|3")),
 )
+UNSEEN = 0.1  # of the noise: a standard error by the last digit that adds less than 1 % to it
 SAME_LEVEL = 0.02
 # Of a peak; standard deviations, counted from `DENSE` settings of a side on, as fewer are farther apart than scatter; settings up to it.
 FALLEN, SCATTERS, DENSE, FEWEST_BEFORE = 0.1, 7.0, 6, 3
@@ -271,6 +272,43 @@ def determined(
     out[selected] = by_row(bent, 1) / x[selected]
     felt = float(out.sum())
     return bent.value, float(np.hypot(bent.u95, felt * half)), out - felt * moved
+
+
+def of_rows(
+    x: Array, y: Array, se: Array | None, target: str, middle: float | None, plane: bool, odd: bool
+) -> tuple[float | None, float | None]:
+    """Value and U95 of some rows as `determined` has them."""
+    o = origin_slope.estimate(x, y, se, odd=odd)
+    mean, width = origin_slope.curve(o, np.zeros(1))
+    return determined(o, target, middle, (float(mean[0]), float(width[0])), plane)[:2]
+
+
+def by_digits(
+    x: Array, y: Array, se: Array | None, digits: Array, target: str, noise: float, plane: bool, odd: bool, value: float, u95: float
+) -> float:  # fmt: skip
+    """What the last printed digit adds to a value and its U95, in quadrature.
+
+    Digits that hide all scatter make a staircase, which passes for a curve without noise. So the model is asked again, with the rounding as
+    the standard error that a reading has at least: U95 reaches as far as that answer and its own U95 do, in quadrature.
+
+    Parameters
+    ----------
+    x, y, se : (n,) array
+        Settings, readings, and stated standard errors or None.
+    digits : (n,) array
+        Standard errors by the last digit, that digit over the root of 12.
+    target, plane, odd
+        See `determined`.
+    noise, value, u95 : float
+        Found without it.
+    """
+    if np.max(digits, initial=0.0) <= UNSEEN * noise:
+        return 0.0
+    errors = np.hypot(digits, 0.0 if se is None else se)
+    other, own = of_rows(x, y, errors, target, float(np.median(errors)), plane, odd)
+    if other is None or own is None:
+        return 0.0
+    return float(np.sqrt(max((other - value) ** 2 + own**2 - u95**2, 0.0)))
 
 
 def of_all_rows(slope: OriginSlope, x: Array, y: Array, se: Array | None) -> OriginSlope:

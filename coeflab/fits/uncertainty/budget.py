@@ -16,6 +16,7 @@ from coeflab.core.cards import html_by
 from coeflab.core.finding import Finding, Severity
 from coeflab.core.table import plus_minus
 from coeflab.core.types import in_angles
+from coeflab.fits.results.fitted_model import DIGITS
 from coeflab.fits.uncertainty.grid_studies import gravest, grid_studies, variant_studies
 from coeflab.law.coefficient import Parts, Status
 from coeflab.law.symbols import ANGULAR, primed
@@ -51,6 +52,9 @@ REMAINS = {
 COUPLED = "error of the drift angle in the rate sweep"
 NOT_OF_A_COMPUTATION = ("force", "moment")
 ITERATIONS = STUDIES["iterations"]
+MOST = 0.5  # of the variance, by the last digit: more digits would narrow U95 most
+LEAST_DIGITS = 1.01  # U95 with that part over U95 without it, below which it is left out
+OF_RESULTS = ("grid", *STUDIES.values(), DIGITS)  # parts from outside the points that no input is
 
 
 @dataclass(frozen=True, slots=True)
@@ -60,7 +64,7 @@ class BudgetPart:
     Attributes
     ----------
     name : str
-        ``random``, ``model form``, ``grid``, ``domain size``, ``iterations``, or the name of an input.
+        ``random``, ``model form``, ``grid``, ``domain size``, ``iterations``, `DIGITS`, or the name of an input.
     half_width : float
         95 %, primed.
     share : float or None
@@ -216,7 +220,7 @@ def _budget(
     if _true_by_construction((table,)):
         lacking = []
     window = 2.0 * max(apart) / 3.0**0.5 if apart else None
-    return budget_of(c, sweep.component, (table,), fitted, inputs, total, lacking, window)
+    return budget_of(c, sweep.component, (table,), fitted, inputs, total, lacking, window, digits=sweep.rounding)
 
 
 def budget_of(
@@ -230,6 +234,7 @@ def budget_of(
     window: float | None = None,
     study: GridStudy | None = None,
     variants: Sequence[VariantStudy] | None = None,
+    digits: float = 0.0,
 ) -> Budget:
     """The budget of a coefficient.
 
@@ -253,6 +258,8 @@ def budget_of(
         The one to take; by default the gravest of the component in these tables.
     variants : sequence of VariantStudy, optional
         Those to take; by default the gravest of each in these tables.
+    digits : float
+        Half-width by the rounding of printed digits.
     """
     value = 0.0 if c.value is None else c.value
     kinds = tuple(dict.fromkeys(t.source.kind for t in tables))
@@ -276,6 +283,8 @@ def budget_of(
     always = [remains.get(u, u) for kind in kinds for u in ALWAYS_OPEN[kind]]
     unassessed = (*lacks, *lacking, *always)
     u95 = None if c.u95 is None else float(np.sqrt(sum(h * h for h in found.values())))
+    if u95 is not None and np.hypot(u95, digits) > LEAST_DIGITS * u95:
+        found[DIGITS], u95 = digits, float(np.hypot(u95, digits))
     parts = tuple(BudgetPart(n, h, (h / u95) ** 2 if u95 else None) for n, h in found.items())
     return Budget(
         c.symbol, c.campaign or "", c.body, c.table or "", kinds[0], value, parts, u95, inputs, total, study, window, unassessed,
@@ -355,7 +364,7 @@ def with_budget(fit: FitResult, found: Sequence[Budget]) -> FitResult:
     changed = []
     for c in among.coefficients:
         b = mine.get(c.symbol)
-        outside = None if b is None else float(np.hypot(b.input or 0.0, b.joined("grid", *STUDIES.values())))
+        outside = None if b is None else float(np.hypot(b.input or 0.0, b.joined(*OF_RESULTS)))
         if b is None or b.u95 is None or not outside:
             changed.append(c)
         else:
@@ -387,7 +396,8 @@ def open_parts(found: Sequence[Budget]) -> tuple[Finding, ...]:
     -------
     tuple of Finding
         ``budget.grid_not_converging`` and ``budget.grid_run_left_out``, warnings, once a study, the first a note where no
-        value is told from zero anyway; ``budget.not_assessed``, a note, once a campaign.
+        value is told from zero anyway; ``budget.digits``, a warning where these are most of a U95, and ``budget.not_assessed``, a note, once a
+        campaign.
     """
     out = []
     for those in _alike([b for b in found if b.grid is not None]):
@@ -423,6 +433,13 @@ def open_parts(found: Sequence[Budget]) -> tuple[Finding, ...]:
         mine = [b for b in found if campaign in b.campaign.split(", ")]
         parts = tuple(dict.fromkeys(name for b in mine for name in b.unassessed))
         stated = "; ".join(dict.fromkeys(filter(None, (b.stated for b in mine))))
+        shares = {primed(b.symbol): p.share for b in mine for p in b.parts if p.name == DIGITS and p.share is not None}
+        if shares:
+            most = max(shares.values())
+            level = Severity.WARN if most > MOST else Severity.NOTE
+            out.append(
+                Finding.of("budget.digits", campaign, level, statistic=most, threshold=MOST, symbols=tuple(shares))
+            )
         if parts:
             out.append(
                 Finding.of(
@@ -481,7 +498,7 @@ def further(symbols: Sequence[str], campaigns: Sequence[str | None], found: Sequ
                 continue
             other = {p.name: p.sensitivity for p in b.inputs}
             out[i, j] += sum(p.sensitivity * other.get(p.name, 0.0) * p.half_width**2 for p in a.inputs) / 4.0
-            for name in ("grid", *STUDIES.values()) if i == j else _shared_studies(a, b):
+            for name in OF_RESULTS if i == j else _shared_studies(a, b):
                 pair = (np.copysign(x.joined(name), x.value) for x in (a, b))
                 out[i, j] += float(np.prod(list(pair))) / 4.0
     return out

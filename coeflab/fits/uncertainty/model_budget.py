@@ -9,9 +9,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from coeflab.fits.results.fit_result import FitResult
+from coeflab.fits.results.fitted_model import DIGITS
 from coeflab.fits.rows.regression import MOMENT_COEFFICIENTS
 from coeflab.fits.uncertainty.budget import (
     COUPLED,
+    LEAST_DIGITS,
     MODEL,
     budget_of,
     grid_study_of,
@@ -70,7 +72,7 @@ def with_model_budgets(
         if _computed(model, tables) and not any(name.startswith("grid") for name in grid):
             lacking = ("grid", *lacking)
         form = () if model.remainder is not None else (FORM,)
-        models.append(replace(model, shared=shifts | grid, not_assessed=(*form, *lacking)))
+        models.append(replace(model, shared=shifts | grid | _digits(model), not_assessed=(*form, *lacking)))
     found = tuple(
         _budget(c, _model_of(c, fit), tables, effects, at + i)
         for i, c in enumerate(fit.coefficients.coefficients)
@@ -143,6 +145,14 @@ def _changed(model: FittedModel, tables: Sequence[ForceTable]) -> dict[str, Arra
     return out
 
 
+def _digits(model: FittedModel) -> dict[str, Array]:
+    """Half-widths by the last printed digit, where they widen any."""
+    felt = model.rounding is not None and np.any(
+        np.hypot(model.half_width, model.rounding) > LEAST_DIGITS * model.half_width
+    )
+    return {DIGITS: model.rounding} if felt and model.rounding is not None else {}
+
+
 def _model_of(c: Coefficient, fit: FitResult) -> tuple[FittedModel, int] | None:
     for m in fit.models:
         bare = [s.removesuffix("'") for s in m.symbols]
@@ -201,4 +211,8 @@ def _budget(
     variables = tuple(v for v, _, _ in model.terms[i].factors) or model.domain.variables
     lacking = _lacking(model, component, variables, tables, effects, slice(number, number + 1))
     study, variants = _study(model, i, tables), _variants(model, i, tables)
-    return budget_of(c, component, _own(model, tables), fitted, inputs, total, lacking, study=study, variants=variants)
+    value = float(model.fit.coefficients[i])
+    digits = 0.0 if model.rounding is None or not value else float(model.rounding[i]) * abs((c.value or 0.0) / value)
+    return budget_of(
+        c, component, _own(model, tables), fitted, inputs, total, lacking, study=study, variants=variants, digits=digits
+    )

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 DEFINED = (
     "U95 of a slope at the origin: 95 % half-width; covers {}. random: scatter of the points; form: the curve that "
-    "the points leave open, or what a fixed form misses by its residuals; input: declared errors of inputs, and the grid."
+    "the points leave open, or what a fixed form misses by its residuals; input: declared errors of inputs, the grid, printed digits."
 )
 STATUS = "status"
 ROUNDING = 1e-12

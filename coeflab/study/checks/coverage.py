@@ -9,7 +9,7 @@ import numpy as np
 
 from coeflab.core.finding import Severity
 from coeflab.core.table import Check, as_check
-from coeflab.fits.rows.sweeps import FEWEST_SETTINGS, JUMPED, STALLED
+from coeflab.fits.rows.sweeps import ACROSS_AT, FEWEST_SETTINGS, JUMPED, STALLED
 from coeflab.fits.rows.too_few import FEW_ROWS
 from coeflab.fits.statistics.diagnostics import replicate_groups
 from coeflab.fits.statistics.least_squares import Index, factorise, solve
@@ -148,7 +148,8 @@ def check(study: Study) -> Sequence[Check]:
     out += _bodies(study)
     few = list(dict.fromkeys(found for f in study.fits for found in f.findings if found.code == FEW_ROWS))
     short = {(found.subject, found["variable"]) for found in few}
-    out += [as_check("coverage", found) for found in few]
+    across = dict.fromkeys(found for f in study.fits for found in f.findings if found.code == ACROSS_AT)
+    out += [as_check("coverage", found) for found in (*few, *across)]
     for f in study.fits:
         groups = max(sum(len(_repeated(s)) for s in f.sweeps), 1)
         for s in f.sweeps:

@@ -6,17 +6,19 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from coeflab.core.errors import InputError, UnitsError, shown
 from coeflab.core.options import NoOptions, parse_options
 from coeflab.core.text.delimited import Cells, read_cells
 from coeflab.core.texts import input_error
 from coeflab.core.types import Array
-from coeflab.core.units import Header
+from coeflab.core.units import Header, factor
 from coeflab.core.wording import Verbatim
 from coeflab.law.symbols import CONTROL_COLUMNS, MOTIONS
 from coeflab.tables.campaign import Campaign, TableDeclaration
 from coeflab.tables.column_map import EXAMPLES, FORCES, ROLES, ColumnMap
-from coeflab.tables.columns import Columns
+from coeflab.tables.columns import Columns, rounded_to
 from coeflab.tables.dialect import is_house_table
 from coeflab.tables.force_table import ForceTable
 from coeflab.tables.to_frd import force_table, speed_of_rows
@@ -66,7 +68,7 @@ def _unknown(cells: Cells, header: Header) -> InputError:
 
 def _columns(cells: Cells, campaign: Campaign, table: TableDeclaration) -> Columns:
     """The columns in SI. Primed ones need the speed, so they are made dimensional last."""
-    given: dict[str, dict[str, Array]] = {role: {} for role in (*ROLES.values(), "error")}
+    given: dict[str, dict[str, Array]] = {role: {} for role in (*ROLES.values(), "error", "rounding")}
     labels: dict[str, list[str]] = {}
     headers: dict[str, str] = {}
     primes: list[tuple[ColumnMap, Array]] = []
@@ -87,6 +89,9 @@ def _columns(cells: Cells, campaign: Campaign, table: TableDeclaration) -> Colum
             )  # fmt: skip
         headers[name] = header.text
         values = _values(cells, header, kind)
+        if kind.role == "force":
+            scale = 1.0 if kind.primed else factor(header.unit or "", kind.dimension)
+            given["rounding"][kind.name] = np.full(len(cells), rounded_to(cells.numbers(header.name)) * scale)
         if kind.primed:
             primes.append((kind, values))
         else:
@@ -97,9 +102,10 @@ def _columns(cells: Cells, campaign: Campaign, table: TableDeclaration) -> Colum
     )
     density = given["density"].get("density")
     for kind, values in primes:
-        given[kind.role][kind.name] = values * campaign.scaling.unit(
-            kind.component, campaign.conditions.density if density is None else density, speed
-        )
+        unit = campaign.scaling.unit(kind.component, campaign.conditions.density if density is None else density, speed)
+        given[kind.role][kind.name] = values * unit
+        if kind.role == "force":
+            given["rounding"][kind.name] = given["rounding"][kind.name] * unit
     return Columns(
         file=cells.file,
         header_line=cells.first_line - 1,
@@ -111,6 +117,7 @@ def _columns(cells: Cells, campaign: Campaign, table: TableDeclaration) -> Colum
         speed=speed,
         forces=given["force"],
         errors=given["error"],
+        rounding=given["rounding"],
         labels=labels,
         doubtful=_doubtful(cells, labels.get(UNCERTAIN, [""] * len(cells)), headers),
         row_labels=tuple(labels.get(POINT, ())),
