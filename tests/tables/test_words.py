@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import time
 from collections.abc import Mapping
 from pathlib import Path
 
@@ -22,7 +23,7 @@ from coeflab.tables.raw_table import RawColumn, RawTable, Stated
 from coeflab.tables.settings import Setting, read_in, require_one_datum
 from coeflab.tables.settings_in_files import against_words
 from coeflab.tables.several_tables import form_together
-from coeflab.tables.words.above import words_above
+from coeflab.tables.words.above import _STATED, words_above
 from coeflab.tables.words.axes import FORMULA, TURN_OF_R
 from coeflab.tables.words.points import POINT_FROM
 from coeflab.tables.words.water import water_density
@@ -122,6 +123,17 @@ def test_a_reference_point_beyond_the_length_of_the_coefficients_leaves_that_of_
         one = next(q for q in questions(raw, force, known) if q.key == "scaling.length")
         assert one.open is is_open
         assert ("1.5 m from the nose" in one.choices) is is_open
+
+
+def test_time_for_a_line_of_blanks_grows_with_its_length() -> None:
+    def seconds(blanks: int) -> float:
+        line = f"reference length{' ' * blanks}x"
+        start = time.process_time()
+        list(_STATED.finditer(line))
+        return time.process_time() - start
+
+    assert seconds(1900) < 0.5  # was 9 s
+    assert said(f"L{' ' * 400}= 4.2 m")["scaling.length"].value == 4.2
 
 
 def test_two_lines_that_differ_leave_a_key_open() -> None:
