@@ -468,3 +468,19 @@ def test_a_german_overall_length_and_primes_by_the_volume() -> None:
         assert one.open
         assert "line 2" in one.choices
         assert "V^(1/3)" in one.choices
+
+
+@pytest.mark.parametrize(
+    ("behind", "point"),
+    [("m", "-2, -0.1, -0.3"), ("m, in FRD", "-2, 0.1, 0.3"), ("m (FLU)", "-2, -0.1, -0.3"), ("m in the FRD frame", "-2, 0.1, 0.3")],
+)  # fmt: skip
+def test_a_point_with_a_frame_of_its_own_is_read_in_that(behind: str, point: str) -> None:
+    """The place of a load cell in FRD over a table in FLU was turned: 0.6 m below its place, and on the other side."""
+    found = said(f"moments about the load cell at (-2.0, 0.1, 0.3) {behind}")
+    one = asked(found, axes__frame="FLU")["axes.reference_point"]
+    assert one.default == point
+    assert "FRD" not in behind or "FRD" in one.why
+
+
+def test_coordinates_of_a_point_have_their_unit() -> None:
+    assert said("moments about the balance at (-2000 100 300) mm")["axes.reference_point"].value == (-2.0, 0.1, 0.3)
