@@ -48,9 +48,10 @@ EXACT = 1e-12  # residuals over the largest force that count as none
 STEP = 0.995  # by which a range shrinks at the least
 UP_DOWN, SIDEWAYS = ("w", "q"), ("v", "r")
 CROSSFLOW = (("v", "w"), ("w", "v"))
+ONE_ANGLE = 1e-3  # rad, of the arctangent of drift over rate, of runs of one ratio
 TOGETHER = 4  # rows in which two motions move, for a cross term
 DRIFTS = {"r": "v", "q": "w"}  # what a rate becomes about another point
-ONE_RATIO = "law.one_ratio"
+ONE_RATIO, FEW_APART = "law.one_ratio", "law.few_apart"
 
 
 @dataclass(frozen=True, slots=True)
@@ -138,6 +139,31 @@ def _of_one_ratio(law: _Law, bent: Sequence[NamedTerm], campaign: str) -> Iterat
             yield Finding.of(
                 ONE_RATIO, f"{campaign} {primed(t.symbol)}", Severity.NOTE, statistic=ratio, by="zero", symbol=t.symbol,
                 product=primed(product), taken=0.0,
+            )  # fmt: skip
+
+
+def _apart(t: NamedTerm, rows: _Rows) -> int:
+    """Rows that tell a product of two motions apart from its squares: those off the ratio that an arm's runs share."""
+    a, b = (rows.x[v] for v in {v: None for v, _, _ in t.term.factors})
+    both = (np.abs(a) > AT_REST) & (np.abs(b) > AT_REST)
+    angle = np.arctan(a[both] / b[both])
+    alike = np.abs(angle[:, None] - angle) <= ONE_ANGLE
+    shared = alike.sum(axis=1) >= TOGETHER
+    return int(both.sum()) - (int(np.max(alike.sum(axis=1)[shared])) if np.any(shared) else 0)
+
+
+def _of_few_apart(law: _Law, bent: Sequence[NamedTerm], campaign: str) -> Iterator[tuple[set[str], Finding]]:
+    """Curvatures in a rate and products that less than `TOGETHER` rows tell apart: no error of their form is seen, and none has a U95."""
+    for t in bent:
+        rate = t.term.factors[0][0]
+        product = f"{t.component}{DRIFTS[rate]}{rate}"
+        found = next((own for own in law.form if own.symbol == product), None)
+        if found is not None and (rows := _apart(found, law.rows)) < TOGETHER:
+            yield (
+                {product, t.symbol},
+                Finding.of(
+                    FEW_APART, f"{campaign} {primed(product)}", Severity.WARN, statistic=rows, threshold=TOGETHER, other=primed(t.symbol),
+                ),
             )  # fmt: skip
 
 
@@ -339,7 +365,7 @@ def _window(variable: str, x: Array) -> tuple[float, float]:
 
 
 def _coefficients(
-    law: _Law, among: CoefficientSet, bases: Mapping[str, tuple[NamedTerm, float]], first: ForceTable
+    law: _Law, among: CoefficientSet, bases: Mapping[str, tuple[NamedTerm, float]], first: ForceTable, few: set[str]
 ) -> tuple[list[Coefficient], Array, Array]:
     """The terms of one component, the covariance of their scatter, and how they move with every coefficient of the slopes."""
     k = len(law.set_up)
@@ -353,7 +379,7 @@ def _coefficients(
     held = ", ".join(f"{s}'" for s in bases)
     for i, t in enumerate(law.form):
         value, half = float(law.values[k + i]), finite(float(fit.half_width[k + i]))
-        u95 = None if half is None or void[i] else float(np.hypot(half, carried[i]))
+        u95 = None if half is None or void[i] or t.symbol in few else float(np.hypot(half, carried[i]))
         names = [v for v, _, _ in t.term.factors]
         moved = (
             np.logical_and.reduce([law.rows.moved(v) for v in names]) if names else np.ones(len(law.rows.y), dtype=bool)
@@ -426,8 +452,11 @@ def complete(found: FitResult, tables: Sequence[ForceTable], scaling: Scaling, o
             (law.rows.names[i], t.symbol, float(value)) for (i, t), value in zip(law.set_up, law.values, strict=False)
         ]
         findings += _of_one_ratio(law, bent, tables[0].campaign)
+        few = list(_of_few_apart(law, bent, tables[0].campaign))
+        findings += [finding for _, finding in few]
         if law.form:
-            some, block, moved = _coefficients(law, among, bases, tables[0])
+            unknown = {symbol for symbols, _ in few for symbol in symbols}
+            some, block, moved = _coefficients(law, among, bases, tables[0], unknown)
             every += some
             blocks.append(block)
             moves.append(moved)

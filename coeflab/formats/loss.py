@@ -298,10 +298,14 @@ def loss_of(
             (f"controls: {', '.join(names)} not held; no row here has their force",) if names else ()
         )
         ours, theirs = law.force(nu), force(files, nu)
+        seldom = apart(force(files, rare), law.force(rare))
     else:
         controls, phrases = _deflected(parameters, names, len(nu))
         nu = np.tile(nu, (len(controls) // len(nu), 1))
         ours, theirs = law.force(nu, controls), steered(files, nu, controls)
+        controls, _ = _deflected(parameters, names, len(rare))
+        rare = np.tile(rare, (len(controls) // len(rare), 1))
+        seldom = apart(steered(files, rare, controls), law.force(rare, controls))
     if any(t.kind == "table" for t in law.terms):
         words = f"{words}; the file's force with its fitted tables"
     compared, why = None, "its exporter does not say what added mass it integrates"
@@ -315,7 +319,7 @@ def loss_of(
         controls=False,
     )
     return Loss(target, not_held, lost, changes, apart(theirs, ours), compared, why, water, words, found,
-                (*phrases, *control_signs(parameters)), apart(force(files, rare), law.force(rare)))  # fmt: skip
+                (*phrases, *control_signs(parameters)), seldom)  # fmt: skip
 
 
 def _deflected(parameters: ParameterFile, names: tuple[str, ...], states: int) -> tuple[Array, tuple[str, ...]]:

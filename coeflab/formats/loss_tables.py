@@ -137,16 +137,15 @@ def in_short(loss: Loss) -> str:
     for x in loss.lost:
         others.setdefault(x.kind, []).append(x.what.partition("; ")[0].partition(": ")[0])
     words += [f"{kind}: {_some(whats, 1)}" for kind, whats in others.items()]
-    found: list[tuple[int, float, Sequence[str]]] = [(*loss.forces.furthest, COMPONENTS)]
+    found: list[tuple[int, float, Sequence[str], str]] = [(*loss.forces.furthest, COMPONENTS, "")]
     if loss.accelerations is not None:
-        found.append((*loss.accelerations.furthest, tuple(f"d{m}/dt" for m in MOTIONS)))
-    if loss.rare is not None and loss.rare.furthest[1] > LOSSLESS and loss.furthest[1] <= LOSSLESS:
-        i, share = loss.rare.furthest
-        words.append(f"{COMPONENTS[i]} differs {RARE} by up to {percent(share)} of its largest")
-    for i, share, names in found:
+        found.append((*loss.accelerations.furthest, tuple(f"d{m}/dt" for m in MOTIONS), ""))
+    if loss.rare is not None:
+        found.insert(loss.furthest[1] > LOSSLESS and len(found), (*loss.rare.furthest, COMPONENTS, f" {RARE}"))
+    for i, share, names, where in found:
         if share > LOSSLESS or not words:
             by = percent(share).replace(">", "more than") if 100.0 * share > MOST_APART else f"up to {percent(share)}"
-            words.append(f"{names[i]} differs by {by} of its largest")
+            words.append(f"{names[i]} {by}{where}" if where else f"{names[i]} differs by {by} of its largest")
     return ", and ".join(words)
 
 

@@ -165,6 +165,12 @@ class Identified:
         """Terms with a value."""
         return tuple(t for t in self.terms if t.value is not None)
 
+    @property
+    def failed(self) -> bool:
+        """Whether no term has a value of its own: none has any, or those needed are biased."""
+        outcomes = {t.outcome for t in self.found}
+        return Outcome.IDENTIFIED not in outcomes and (Outcome.BIASED in outcomes or not outcomes)
+
 
 def together_in_words(symbols: Sequence[str]) -> str:
     """Terms that do as well in the place of one."""

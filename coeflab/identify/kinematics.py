@@ -18,6 +18,7 @@ WINDOWS = 24  # of a record
 TURNS = 0.1  # of the displacements: less variation, and no axes can be told apart
 AGREES, DOUBTED = 0.3, 0.1  # misfit over the variation; from where on another reading is looked for
 CLEARLY = 0.4  # of a better reading over that of body axes
+DRIFTS, CERTAINLY = 0.02, 3.0  # a current over the speed, and over its error, that is named
 FORWARD = 0.7  # cosine of the drift angle of a body that moves ahead, at least, as the median
 RATES = {"deg": 180.0 / np.pi, "rad": np.pi / 180.0}
 Columns = Mapping[str, Array]
@@ -101,6 +102,27 @@ def contradicted(c: Columns, file: str) -> tuple[Finding, ...]:
     elif "psi" in c and {"u", "v"} <= set(c) and _follows_heading(c):
         out.append(Finding.of("record.velocities", file, Severity.FAIL, reading="course", misfit=0.0))
     return (*out, *_rate(c, file))
+
+
+def drift(c: Columns, file: str) -> tuple[Finding, ...]:
+    """The mean rate by which x and y move beyond u and v along the body, where it is more than chance: a current."""
+    if not (found := readings(c)) or found[0].misfit > AGREES:
+        return ()
+    time, psi = c["t"], np.unwrap(c["psi"])
+    along = rotated(c, psi, c.get("v", np.zeros(len(time))))
+    ends = np.unique(np.linspace(0, len(time) - 1, WINDOWS + 1).astype(int))
+    beyond = np.diff(np.column_stack([c["x"], c["y"]])[ends] - _integral(along, time)[ends], axis=0)
+    rates = beyond / np.diff(time[ends])[:, None]
+    current, error = rates.mean(axis=0), np.std(rates, axis=0, ddof=1) / np.sqrt(len(rates))
+    size, speed = float(np.hypot(*current)), float(np.median(np.hypot(*along.T)))
+    if size <= max(DRIFTS * speed, CERTAINLY * float(np.hypot(*error))):
+        return ()
+    return (
+        Finding.of(
+            "record.current", file, Severity.NOTE, statistic=size, north=float(current[0]), east=float(current[1]),
+            share=size / speed,
+        ),
+    )  # fmt: skip
 
 
 def _follows_heading(c: Columns) -> bool:

@@ -14,7 +14,7 @@ from coeflab.core.text.delimited import Cells, read_cells, require_unit
 from coeflab.core.texts import input_error, words
 from coeflab.core.types import Array, brief, locking
 from coeflab.core.units import Header, factor, parse_header
-from coeflab.identify.kinematics import FORWARD, by_positions, contradicted, sideways
+from coeflab.identify.kinematics import FORWARD, by_positions, contradicted, drift, sideways
 from coeflab.law.symbols import ANGULAR, CONTROLS, LINEAR, MOTIONS
 from coeflab.motion.vehicle import Vehicle
 from coeflab.tables.importers.table import raw
@@ -134,7 +134,7 @@ def read_series(path: Path, vehicle: Vehicle, columns: str = "") -> MotionSeries
         if (ahead := sideways(found)) < FORWARD:
             findings.append(Finding.of("record.sideways", path.name, Severity.FAIL, statistic=ahead, threshold=FORWARD))
     else:
-        findings = list(contradicted(found, path.name))
+        findings = [*contradicted(found, path.name), *drift(found, path.name)]
     for one in findings:
         if one.severity is Severity.FAIL:
             wording = words(one)

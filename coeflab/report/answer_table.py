@@ -26,7 +26,7 @@ def answer_table(found: Answer) -> Table:
     -------
     Table
         Symbol; ours with U95, also in per cent; each published column in the digits of its source; the difference to the
-        compared column over U95 as a number and a bar of `BAR` letters, `SHORT_BAR` beside many columns, for one U95, ``!`` beyond. Of a publication, and of
+        compared column over U95 as a number and a bar of `BAR` letters, `SHORT_BAR` beside many columns, for one U95, ``!`` where the verdict is that it lies beyond. Of a publication, and of
         models, the table that stands in the place of rows.
     """
     if found.table is not None:
@@ -72,4 +72,4 @@ def _bar(r: AnswerRow, letters: int) -> str:
     if r.share is None:
         return "-"
     whole = min(round(letters * abs(r.share)), letters)
-    return f"{r.share:+.2f} {'#' * whole}{'!' if abs(r.share) > 1.0 else ''}".strip()
+    return f"{r.share:+.2f} {'#' * whole}{'!' if r.agrees is False else ''}".strip()

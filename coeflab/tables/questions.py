@@ -27,7 +27,7 @@ from coeflab.tables.raw_table import HALF_MODEL, RawTable, Stated
 from coeflab.tables.settings import ARM_POINT, REFERENCE, SYMMETRY, Setting, Settings, frame_of, of_datum
 from coeflab.tables.settings_in_files import arm_by_words, known_length, point_by_words, with_formula
 from coeflab.tables.words.above import of_the_test
-from coeflab.tables.words.points import CENTRE_FROM, POINT_FROM, POINT_OF, UNSAID
+from coeflab.tables.words.points import CENTRE_FROM, POINT_FRAME, POINT_FROM, POINT_OF, UNSAID
 from coeflab.tables.words.primes import BASIS, LEVER, SIZES, area_of, length_of
 
 UNSAID_IN_WORDS = "; from where it does not say: taken aft of the nose"
@@ -282,6 +282,8 @@ def _holds_anywhere(columns: Sequence[Assigned], likely: Sequence[str]) -> bool:
 
 def _of_points(raw: RawTable, settings: Settings, anywhere: bool) -> Iterator[Question]:
     at, frame, datum = raw.stated.get(POINT_OF), frame_of(settings), settings.get("axes.datum")
+    if framed := raw.stated.get(POINT_FRAME):  # of the point alone: forces may count in another one
+        frame = None if framed.contradicted else parse_axes(framed.value)
     own = at.value if at and isinstance(at.value, tuple) and len(at.value) == 3 else None
     asked = _asked(POINT_OF, place=PLACE_ASKED)
     asks, choices = asked.asks, asked.choices
@@ -301,7 +303,7 @@ def _of_points(raw: RawTable, settings: Settings, anywhere: bool) -> Iterator[Qu
         why = f"the file's point {_point(own)} from the origin of its axes, {at.place}"
         asks += f". The file has {_point(own)} in its own axes from its own origin ({at.place})"
         short = f"of the file, {at.place}"
-        shown = f"{_point(own)} in its axes"
+        shown = f"{_point(own)} in {framed.value if framed and frame else 'its axes'}"
         if frame is not None or not any(own):
             here = ", ".join(f"{x + 0.0:.12g}" for x in (frame.rotation @ np.array(own) if frame else np.array(own)))
     elif (given := raw.stated.get("axes.datum")) and (

@@ -250,6 +250,14 @@ def test_where_parameters_go_and_what_does_not_follow_the_density(
     assert stays not in said(puma[1])
 
 
+def test_every_quantity_is_named_before_it_is_derived() -> None:
+    steps: list[str] = []
+    form = derive(drawn(3, 1), say=steps.append)
+    assert steps == [f.name.replace("_", " ") for f in form.functions]
+    assert steps[0] == "mass matrix"
+    assert {"bias", "drag", "equations", "end effector"} < set(steps)
+
+
 def test_a_vehicle_without_an_arm_has_nothing_to_derive() -> None:
     with pytest.raises(InputError, match="a vehicle without links; expected one link or more"):
         derive(replace(drawn(1, 1), links=()))

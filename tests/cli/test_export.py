@@ -30,7 +30,8 @@ def test_a_loss_is_shown_and_must_be_accepted(coeflab: Run, tmp_path: Path) -> N
     assert refused.returncode == 2
     assert "--accept-loss" in refused.stderr
     assert "gazebo does not hold all of" in flat(refused.stdout)
-    assert len(refused.stdout.splitlines()) <= 6
+    assert len(refused.stdout.splitlines()) <= 7
+    assert "astern, broadside and at rest" in flat(refused.stdout)
     whole = coeflab("export", PARAMS, "--to", "gazebo", "--out", out, "--wide")
     assert "Force law of gazebo against the parameter file" in flat(whole.stdout)
     assert not out.exists()

@@ -11,7 +11,7 @@ import pytest
 import coeflab as cf
 from coeflab.fits.joint.moving import LEFT_OUT
 from coeflab.fits.results.fit_result import FitResult, covariance_of
-from coeflab.fits.tied_law import ONE_RATIO
+from coeflab.fits.tied_law import FEW_APART, ONE_RATIO
 from coeflab.law.named_terms import read_term
 from coeflab.law.scaling import Scaling
 from coeflab.study.fitting import fitted, rejoined
@@ -95,6 +95,25 @@ def test_runs_of_one_ratio_give_their_sum_and_say_so(drift: str) -> None:
     assert (said["product"], said["by"]) == (f"X{drift}{rate}'", "zero")
     wanted = truth[f"X{rate}{rate}"] + ratio * truth[f"X{drift}{rate}"]
     assert found.coefficients[f"X{rate}{rate}"].value == pytest.approx(wanted, rel=1e-4)
+
+
+@pytest.mark.parametrize(("count", "is_known"), [(3, False), (5, True)])
+def test_three_rows_beside_runs_of_one_ratio_give_no_u95(
+    count: int, is_known: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A term that the law has not (X vvrr) moves the product by 3 to 50 %, and three rows leave nothing to see it by."""
+    monkeypatch.setitem(TRUTH, "v", TRUTH["v"] | {"Xvvrr": 0.01})
+    sines = np.sin(np.radians([-8.0, 4.0, 8.0, -4.0, 6.0]))[:count]
+    few = table("v", sines, np.array([0.3, 0.4, 0.5, 0.2, 0.35])[:count], "combined", noise=1e-3)
+    law = laws(one_campaign(swept("v", noise=1e-3), arm("v", (0.0,), noise=1e-3), few))["tied_law", "tests"]
+    said = [f for f in law.findings if f.code == FEW_APART]
+    product = law.coefficients["Xvr"]
+    assert (product.u95 is not None) is is_known
+    assert abs(product.value / 0.010 - 1.0) > 0.02
+    if is_known:
+        assert not said
+    else:
+        assert (said[0].statistic, law.coefficients["Xrr"].u95) == (count, None)
 
 
 @pytest.mark.parametrize("first", ["drift", "arm"])

@@ -17,12 +17,12 @@ from coeflab.core.types import Array
 from coeflab.formats import EXPORTERS, SimulatorExporter, SteeredExporter
 from coeflab.formats.export import export
 from coeflab.formats.loss import LOSSLESS, covered_grid, loss_of
-from coeflab.formats.loss_tables import in_short
+from coeflab.formats.loss_tables import in_short, percent
 from coeflab.formats.missing_parts import Kind, missing_mass, missing_water
 from coeflab.motion.vehicle import vehicle
 from coeflab.published.huuv.model import parameter_file as huuv_file
 from coeflab.published.huuv.model import read_huuv
-from coeflab.vehicle.force_law import force_law
+from coeflab.vehicle.force_law import force_law, motion_law
 from coeflab.vehicle.inertia import water_inertia
 from coeflab.vehicle.parameter_file import ParameterFile, read_parameter_file
 from tests.formats import files as made
@@ -243,6 +243,17 @@ def test_controls_are_among_what_is_compared(target: str) -> None:
     assert apart(plugin.steered_force) <= (0.02 if across else LOSSLESS)
     assert apart(lambda files, nu, controls: plugin.steered_force(files, nu, -controls)) > 0.1
     assert apart(lambda files, nu, _: plugin.force(files, nu)) > 0.1
+
+
+def test_a_rudder_astern_is_among_what_is_compared() -> None:
+    """LiftDrag of gazebo has no force in a flow from behind: all of N by the rudder is lost there; MSS has it."""
+    file = read_parameter_file(Path("remus100"))
+    backwards, controls = np.array([[-file.conditions.speed, *[0.0] * 5]]), np.array([[0.35, 0.0, 0.0]])
+    lost = abs(motion_law(file)[0].force(backwards, controls)[0, 5])
+    loss = export(file, "gazebo").loss
+    assert loss.rare.worst[5] >= lost > 0.0
+    assert in_short(loss).endswith(f"N up to {percent(loss.rare.relative[5])} astern, broadside and at rest")
+    assert export(file, "mss").loss.rare.furthest[1] <= LOSSLESS
 
 
 @each_target

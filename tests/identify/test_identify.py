@@ -83,6 +83,7 @@ def error(found: Identified, symbol: str) -> float:
 
 def test_clean_series_give_every_planted_term(clean: list[Path]) -> None:
     found = identify_from(clean, FILE, {})
+    assert not found.failed
     assert kept(found, "X") == {"X0", "Xvv", "Xvr", "Xdrdr"}
     for component, symbols in LATERAL.items():
         assert kept(found, component) == symbols
@@ -159,6 +160,7 @@ def test_positions_alone_identify_nothing(clean: list[Path], tmp_path: Path) -> 
     found = identify_from(files, FILE, {})
     assert found.found
     assert {t.outcome for t in found.found} <= {Outcome.BIASED, Outcome.EXCHANGEABLE}
+    assert found.failed
     assert all(t.low is None and t.verdict is Verdict.NONE for t in found.terms)
     assert not any("removes the bias" in s or s.startswith("Interval") for s in found.statements)
     assert "biased" in identified_figure(found, "here").svg

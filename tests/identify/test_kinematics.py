@@ -11,7 +11,7 @@ import pytest
 from coeflab.core.errors import InputError
 from coeflab.core.finding import Finding, Severity
 from coeflab.identify.identify import _shared
-from coeflab.identify.kinematics import by_positions, contradicted, readings
+from coeflab.identify.kinematics import by_positions, contradicted, drift, readings
 from coeflab.identify.series import read_series
 from coeflab.motion.vehicle import vehicle
 from tests.motion.vehicles import made
@@ -41,6 +41,17 @@ def test_velocities_along_the_body_agree_in_a_current_with_noise_and_a_heading_t
     c |= {"x": c["x"] + 0.05 * noise[0], "y": c["y"] + 0.05 * noise[1], "psi": np.mod(c["psi"], 2.0 * np.pi)}
     assert not contradicted(c, "run.csv")
     assert readings(c)[0].misfit < 0.1
+
+
+def test_a_current_between_positions_and_velocities_is_named() -> None:
+    (found,) = drift(path(), "run.csv")
+    assert (found.code, found.severity) == ("record.current", Severity.NOTE)
+    assert (found["north"], found["east"]) == pytest.approx(CURRENT, abs=0.002)
+    still = path()
+    still |= {"x": still["x"] - CURRENT[0] * T, "y": still["y"] - CURRENT[1] * T}
+    assert not drift(still, "run.csv")
+    noise = np.random.default_rng(2).normal(size=(2, len(T)))
+    assert not drift(still | {"x": still["x"] + noise[0], "y": still["y"] + noise[1]}, "run.csv")
 
 
 def earth(c: dict[str, np.ndarray]) -> dict[str, np.ndarray]:

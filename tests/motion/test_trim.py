@@ -46,6 +46,27 @@ def test_a_straight_run_takes_its_resistance_in_equal_parts() -> None:
     assert got.figures["beta"][0] == pytest.approx(0.0, abs=1e-9)
 
 
+@pytest.mark.parametrize("power", [1.5, 3.0])
+def test_equal_thrusters_push_alike_whatever_their_curve(power: float) -> None:
+    """Least squares of commands favoured one thruster where thrust rises faster than with the square (T = c n^3: all on one)."""
+    pair = [thruster("left", -LEVER), thruster("right", LEVER)]
+    points = [0.0, 25.0, 50.0, 75.0, 100.0]
+    thrust = [20.0 * (n / 100.0) ** power for n in points]
+    segments = [
+        {"low": a, "high": b, "coefficients": [s - (t - s) / (b - a) * a, (t - s) / (b - a)]}
+        for a, b, s, t in zip(points, points[1:], thrust, thrust[1:], strict=False)
+    ]
+    for one in pair:
+        one["curve"] = {"command": "power", "unit": "%", "segments": segments}
+    slopes = {"Xu|u|": -10.0, "Yv": -40.0, "Nv": -3.0, "Yr": 1.0, "Nr": -6.0}
+    craft = vehicle(parameter_file(slopes, MASS, TURNING, thrusters=pair), ("u", "v", "r"))
+    for speed in (1.0, 1.5):
+        got = trim(craft, {"u": speed})
+        left, right = got.commands.values()
+        assert left == pytest.approx(right, rel=1e-7)
+        assert np.interp(left, points, thrust) == pytest.approx(10.0 * speed**2 / 2.0, rel=1e-7)
+
+
 @pytest.mark.slow
 def test_equal_commands_give_the_speed_at_which_resistance_is_thrust() -> None:
     got = trim(twin(), {}, {"left": 50.0, "right": 50.0})

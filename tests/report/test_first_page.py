@@ -213,12 +213,13 @@ def test_any_name_and_any_sweep(angles: list[float], named: str):
 
 def test_a_bar_of_one_u95_and_one_beyond():
     rows = (
-        AnswerRow("Yv", -0.0262, 0.0027, published=(-0.0278, -0.0281, -0.0303), difference=0.0027),
-        AnswerRow("Nv", -0.0147, 0.0019, published=(-0.0136, -0.0140, -0.0131), difference=-0.0057),
+        AnswerRow("Yv", -0.0262, 0.0027, published=(-0.0278, -0.0281, -0.0303), difference=0.0027, agrees=True),
+        AnswerRow("Nv", -0.0147, 0.0019, published=(-0.0136, -0.0140, -0.0131), difference=-0.0057, agrees=False),
+        AnswerRow("Nr", -0.0028, 0.0010, published=(-0.0044, -0.0040, -0.0042), difference=0.0016),  # no verdict
     )
     made = answer_table(Answer("S", ("experiment 1990", "steady CFD", "PMM CFD 2012"), "experiment 1990", rows))
     assert made.headers == ("", "ours +- U95", "experiment", "steady CFD", "PMM CFD", "diff./U95")
-    assert [row[-1] for row in made.rows] == ["+1.00 ######", "-3.00 ######!"]
+    assert [row[-1] for row in made.rows] == ["+1.00 ######", "-3.00 ######!", "+1.60 ######"]
     assert made.rows[1][1:5] == ("-0.0147 +- 0.0019 (13 %)", "-0.0136", "-0.0140", "-0.0131")
     assert plain_lines(made)[1].split()[-1] == "diff./U95"
     assert max(map(len, plain_lines(made))) <= 79

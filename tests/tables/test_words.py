@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import time
 from collections.abc import Mapping
 from pathlib import Path
 
@@ -22,7 +23,7 @@ from coeflab.tables.raw_table import RawColumn, RawTable, Stated
 from coeflab.tables.settings import Setting, read_in, require_one_datum
 from coeflab.tables.settings_in_files import against_words
 from coeflab.tables.several_tables import form_together
-from coeflab.tables.words.above import words_above
+from coeflab.tables.words.above import _STATED, words_above
 from coeflab.tables.words.axes import FORMULA, TURN_OF_R
 from coeflab.tables.words.points import POINT_FROM
 from coeflab.tables.words.water import water_density
@@ -122,6 +123,17 @@ def test_a_reference_point_beyond_the_length_of_the_coefficients_leaves_that_of_
         one = next(q for q in questions(raw, force, known) if q.key == "scaling.length")
         assert one.open is is_open
         assert ("1.5 m from the nose" in one.choices) is is_open
+
+
+def test_time_for_a_line_of_blanks_grows_with_its_length() -> None:
+    def seconds(blanks: int) -> float:
+        line = f"reference length{' ' * blanks}x"
+        start = time.process_time()
+        list(_STATED.finditer(line))
+        return time.process_time() - start
+
+    assert seconds(1900) < 0.5  # was 9 s
+    assert said(f"L{' ' * 400}= 4.2 m")["scaling.length"].value == 4.2
 
 
 def test_two_lines_that_differ_leave_a_key_open() -> None:
@@ -456,3 +468,19 @@ def test_a_german_overall_length_and_primes_by_the_volume() -> None:
         assert one.open
         assert "line 2" in one.choices
         assert "V^(1/3)" in one.choices
+
+
+@pytest.mark.parametrize(
+    ("behind", "point"),
+    [("m", "-2, -0.1, -0.3"), ("m, in FRD", "-2, 0.1, 0.3"), ("m (FLU)", "-2, -0.1, -0.3"), ("m in the FRD frame", "-2, 0.1, 0.3")],
+)  # fmt: skip
+def test_a_point_with_a_frame_of_its_own_is_read_in_that(behind: str, point: str) -> None:
+    """The place of a load cell in FRD over a table in FLU was turned: 0.6 m below its place, and on the other side."""
+    found = said(f"moments about the load cell at (-2.0, 0.1, 0.3) {behind}")
+    one = asked(found, axes__frame="FLU")["axes.reference_point"]
+    assert one.default == point
+    assert "FRD" not in behind or "FRD" in one.why
+
+
+def test_coordinates_of_a_point_have_their_unit() -> None:
+    assert said("moments about the balance at (-2000 100 300) mm")["axes.reference_point"].value == (-2.0, 0.1, 0.3)

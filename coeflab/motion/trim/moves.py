@@ -39,7 +39,9 @@ class Scaled:
         (n,) -> (m, n), their derivatives.
     low, high : (n,) array
     target, weight : (n,) array
-        Of the effort 1/2 |weight (y - target)|^2.
+        Of the effort 1/2 |weight (spent(y) - target)|^2.
+    spent : callable or None
+        (n,) -> (n,), what the effort counts of each unknown, rising with it; the unknown itself where None.
     """
 
     equations: Callable[[Array], Array]
@@ -48,11 +50,29 @@ class Scaled:
     high: Array
     target: Array
     weight: Array
+    spent: Callable[[Array], Array] | None = None
+
+    def away(self, y: Array) -> Array:
+        """(n,) weighted distances from the target, whose squares are twice the effort."""
+        return np.asarray(self.weight * ((y if self.spent is None else self.spent(y)) - self.target))
 
     def effort(self, y: Array) -> float:
         """Half the weighted squares from the target."""
-        away = self.weight * (y - self.target)
+        away = self.away(y)
         return float(0.5 * (away @ away))
+
+    def away_slopes(self, y: Array) -> Array:
+        """(n,) slopes of `away`, each by its own unknown, by the steps of `differences`."""
+        if self.spent is None:
+            return self.weight
+        step = DIFFERENCE * np.maximum(1.0, np.abs(y))
+        ahead, behind = np.minimum(y + step, self.high), np.maximum(y - step, self.low)
+        span = np.where(ahead > behind, ahead - behind, 1.0)
+        return np.asarray((self.away(ahead) - self.away(behind)) / span)
+
+    def pull(self, y: Array) -> Array:
+        """(n,) slope of the effort."""
+        return np.asarray(self.away_slopes(y) * self.away(y))
 
     def violation(self, y: Array) -> float:
         """The largest absolute equation, infinite where one is not finite."""
@@ -189,7 +209,7 @@ def selected(problem: Scaled, start: Array) -> Array:
         slopes = problem.slopes(y)
         if not np.all(np.isfinite(slopes)):
             return y
-        pull = problem.weight**2 * (y - problem.target)
+        pull = problem.pull(y)
         step = _plain(problem, y, slopes)
         free = ((y > problem.low) | (step > 0.0)) & ((y < problem.high) | (step < 0.0))
         directions = tangent(slopes, free)
@@ -207,21 +227,26 @@ def selected(problem: Scaled, start: Array) -> Array:
 def _plain(problem: Scaled, y: Array, slopes: Array) -> Array:
     """The step to the least effort on the tangent plane, with bounds, unknowns without weight held by a thread."""
     heavy = 1e5 * max(1.0, float(np.max(problem.weight)))
-    pull = np.where(problem.weight > 0.0, problem.weight, 1e-2 * max(1e-3, float(np.max(problem.weight))))
-    towards = np.where(problem.weight > 0.0, problem.target - y, 0.0)
-    matrix = np.vstack([heavy * slopes, np.diag(pull)])
-    right = np.concatenate([np.zeros(len(slopes)), pull * towards])
+    slack, away = problem.away_slopes(y), problem.away(y)
+    thread = 1e-2 * max(1e-3, float(np.max(problem.weight)))
+    felt = slack > 1e-2 * thread if problem.spent is not None else problem.weight > 0.0
+    matrix = np.vstack([heavy * slopes, np.diag(np.where(felt, slack, thread))])
+    right = np.concatenate([np.zeros(len(slopes)), np.where(felt, -away, 0.0)])
     return bounded_step(matrix, right, problem.low - y, problem.high - y)
 
 
 def _newton(problem: Scaled, y: Array, slopes: Array, directions: Array, free: Mask, pull: Array) -> Array:
     """Newton's step in tangent coordinates; the Hessian of the Lagrangian by second differences, made positive."""
     multipliers = np.linalg.lstsq(slopes[:, free].T, -pull[free], rcond=RANK)[0]
-    middle = float(multipliers @ problem.equations(y))
+
+    def lagrangian(at: Array) -> float:
+        return float(multipliers @ problem.equations(at)) + (0.0 if problem.spent is None else problem.effort(at))
+
+    middle = lagrangian(y)
 
     def bend(along: Array) -> float:
-        both = problem.equations(y + BEND * along) + problem.equations(y - BEND * along)
-        found = (float(multipliers @ both) - 2.0 * middle) / BEND**2
+        both = lagrangian(y + BEND * along) + lagrangian(y - BEND * along)
+        found = (both - 2.0 * middle) / BEND**2
         return found if np.isfinite(found) else 0.0
 
     k = directions.shape[1]
@@ -232,7 +257,8 @@ def _newton(problem: Scaled, y: Array, slopes: Array, directions: Array, free: M
         for j in range(i):
             both = bend(directions[:, i] + directions[:, j])
             curved[i, j] = curved[j, i] = (both - alone[i] - alone[j]) / 2.0
-    hessian = directions.T @ (problem.weight[:, None] ** 2 * directions) + curved
+    plain = problem.weight[:, None] ** 2 * directions if problem.spent is None else 0.0 * directions
+    hessian = directions.T @ plain + curved
     values, vectors = np.linalg.eigh(hessian)
     floor = 1e-6 * max(1e-12, float(np.max(np.abs(values), initial=0.0)))
     return np.asarray(-vectors @ ((vectors.T @ (directions.T @ pull)) / np.maximum(np.abs(values), floor)))

@@ -46,6 +46,10 @@ class Unknown:
         A change that counts as one.
     target, weight : float
         The rule of selection: the least sum of (weight (x - target) / scale)^2; a weight of zero does not count.
+    force : callable or None
+        Of a command with a target of zero: its force in N, which the rule counts over `strongest` instead; it rises with x.
+    strongest : float
+        N.
     """
 
     name: str
@@ -55,6 +59,8 @@ class Unknown:
     scale: float
     target: float = 0.0
     weight: float = 1.0
+    force: Callable[[float], float] | None = None
+    strongest: float = 1.0
 
     def shown(self, value: float, digits: int = 6) -> str:
         """A value with its unit, angles in degrees; 0 where it is less than a search can tell from it."""
@@ -223,7 +229,9 @@ class OperatingPoint:
 def least_effort(unknowns: Sequence[Unknown]) -> str:
     """The rule in words, as the weights of the unknowns have it."""
     parts = [
-        f"{f'({u.name} - {u.shown(u.target)})' if u.target else u.name} / {u.shown(u.scale / u.weight, 4)}"
+        f"thrust of {u.name} / {number(u.strongest / u.weight, 4)} N"
+        if u.force is not None
+        else f"{f'({u.name} - {u.shown(u.target)})' if u.target else u.name} / {u.shown(u.scale / u.weight, 4)}"
         for u in unknowns
         if u.weight > 0.0 and u.low < u.high
     ]
@@ -233,7 +241,8 @@ def least_effort(unknowns: Sequence[Unknown]) -> str:
 def nearest(unknowns: Sequence[Unknown], point: Mapping[str, float]) -> tuple[Unknown, ...]:
     """Unknowns whose rule is to stay near a point in their scales; those that it does not name do not count."""
     return tuple(
-        replace(u, target=point[u.name], weight=1.0) if u.name in point else replace(u, weight=0.0) for u in unknowns
+        replace(u, target=point[u.name], weight=1.0, force=None) if u.name in point else replace(u, weight=0.0)
+        for u in unknowns
     )
 
 
@@ -261,9 +270,18 @@ def operating_point(
     def column(name: str) -> Array:
         return np.array([getattr(u, name) for u in unknowns])
 
+    forces = [(i, u.force, u.strongest) for i, u in enumerate(unknowns) if u.force is not None]
+    scale = column("scale")
+
+    def spent(x: Array) -> Array:
+        out = x / scale
+        for i, force, strongest in forces:
+            out[i] = force(float(x[i])) / strongest
+        return np.asarray(out)
+
     problem = Problem(
-        function, column("low"), column("high"), column("scale"), np.array([e.size for e in equations]),
-        column("target"), column("weight"),
+        function, column("low"), column("high"), scale, np.array([e.size for e in equations]),
+        column("target"), column("weight"), spent=spent if forces else None,
     )  # fmt: skip
     found = solve(problem, None if first is None else np.array(first), starts, seed)
     return OperatingPoint(tuple(unknowns), tuple(equations), found, least_effort(unknowns))

@@ -46,6 +46,8 @@ class Problem:
         A violation of each equation that counts as one; it holds to 1e-9 of that.
     target, weight : (n,) array
         The rule of selection: the least sum of (weight (x - target) / scale)^2; a weight of zero does not count.
+    spent : callable or None
+        (n,) -> (n,), what stands for x / scale in that sum, rising with it, and for the target.
     derivative : callable or None
         (n,) -> (m, n); central differences where None.
     """
@@ -58,6 +60,7 @@ class Problem:
     target: Array
     weight: Array
     derivative: Callable[[Array], Array] | None = None
+    spent: Callable[[Array], Array] | None = None
 
     def scaled(self) -> Scaled:
         """The same in unknowns and equations of order one."""
@@ -74,7 +77,9 @@ class Problem:
             def slopes(y: Array) -> Array:
                 return np.asarray(exact(y * self.scale) * self.scale / self.size[:, None])
 
-        return Scaled(equations, slopes, low, high, self.target / self.scale, self.weight)
+        felt = self.spent
+        spent = None if felt is None else lambda y: felt(y * self.scale)
+        return Scaled(equations, slopes, low, high, self.target / self.scale, self.weight, spent)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -184,7 +189,7 @@ def _described(
     holds = p.violation(y) <= HOLDS
     inward = open_ways @ (open_ways.T @ (1.0 * at_low - 1.0 * at_high))
     walked = [d for d in open_ways.T if _goes_on(p, y, d, inward)] if holds else []
-    down = p.weight**2 * (y - p.target) if holds else slopes.T @ np.nan_to_num(value)
+    down = p.pull(y) if holds else slopes.T @ np.nan_to_num(value)
     free = ~(given | at_low | at_high)
     if holds and np.any(free):
         down = down - slopes.T @ np.linalg.lstsq(slopes[:, free].T, down[free], rcond=RANK)[0]

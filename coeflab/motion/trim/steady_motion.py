@@ -243,7 +243,11 @@ def command_unknowns(vehicle: Vehicle, speed: float) -> tuple[Unknown, ...]:
     out = []
     for t in vehicle.thrusters:
         largest = max(abs(t.curve.low), abs(t.curve.high))
-        out.append(Unknown(t.name, t.curve.unit, t.curve.low, t.curve.high, largest))
+        strongest = max(abs(t.curve.at(t.curve.low)), abs(t.curve.at(t.curve.high)))
+        force = t.curve.at if strongest else None
+        out.append(
+            Unknown(t.name, t.curve.unit, t.curve.low, t.curve.high, largest, force=force, strongest=strongest or 1.0)
+        )
         if t.tilt_axis is not None:
             out.append(Unknown(f"{t.name}.tilt", "rad", t.tilt_low, t.tilt_high, 1.0, weight=0.0))
     if not vehicle.thrusters:

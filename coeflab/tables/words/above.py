@@ -42,7 +42,7 @@ _DIMENSIONS = {
 }  # fmt: skip
 _LENGTHS = ("lpp", "lbp", "loa", "lwl", "los")
 _STATED = re.compile(
-    r"(?P<name>[^\W\d_][^=:;,()\[\]]{0,40}?)\s*(?:[\[(](?P<before>[^\[\]()]{1,12})[\])])?\s*(?:=|:)\s*"
+    r"(?P<name>[^\W\d_](?:[^=:;,()\[\]]{0,39}?[^=:;,()\[\]\s])?)\s*(?:[\[(](?P<before>[^\[\]()]{1,12})[\])]\s*)?(?:=|:)\s*"
     r"(?P<number>[-+]?\d[\d.,' ]*(?:[eE][-+]?\d+)?)\s*[\[(]?(?P<unit>(?:[^\W\d]|[°µ])[^\s,;=\[\])]*)?"
 )
 _BROAD = r"diam(?:eter|[èe]tre)?|durchmesser|chord|profiltiefe|corde|breadth|beam|breite|largeur|width"

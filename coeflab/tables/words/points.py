@@ -12,6 +12,7 @@ from coeflab.tables.raw_table import Stated
 POINT_OF = "axes.reference_point"
 # No key of campaign.toml: x, its unit or L, and the point that the words count the moments' point from.
 POINT_FROM = "axes.from"
+POINT_FRAME = "axes.of_point"  # no key of campaign.toml: the frame that words give a point by its coordinates
 UNSAID = "nose?"  # in its place where a share of the length has no point
 ARM_FROM = "table.arm_from"  # no key of campaign.toml: where words place the point that R and U are measured to
 OF_MOMENTS = "moments-datum"  # in its place where they count from the point of the moments
@@ -34,6 +35,12 @@ _MOMENTS_AT = re.compile(
     )
 )
 _TRIPLE = re.compile(r"[(\[]\s*" + r"[\s,;]+".join([r"([-+]?(?:\d[\d.]*|\.\d+)(?:[eE][-+]?\d+)?)"] * 3) + r"\s*[)\]]")
+# Unit and frame of coordinates, behind them: "(-2.0, 0.1, 0.3) m, in FRD".
+_TRIPLE_IN = re.compile(
+    r"(?i)\s*(?P<unit>mm|cm|m|ft|in(?!\s))?(?![^\W_])"
+    + atomic(r"[\s,;:(\[]|(?:in|of|im|en|the|body|axes|frame|coordinates)(?![^\W_])", "between")
+    + r"(?P<frame>FRD|FLU|CFD)?(?![^\W_])"
+)
 _AT = re.compile(
     r"(?i)(?P<share>x\s*/\s*l\w{0,2}\s*[=:]?\s*)?(?P<number>[-+\u2212]?\d[\d.,]*)\s*[\[(]?(?P<unit>mm|cm|m|ft|in|%\s*(?:of\s+|von\s+|de\s+)?(?:the\s+|der\s+|la\s+)?l(?:ength|[äa]e?nge|ongueur|oa|pp|bp)?|l(?:oa|pp|bp)?)?"
     r"(?![^\W_])[\])]?"
@@ -131,8 +138,13 @@ def moments_point(place: str, text: str, marks: Marks) -> dict[str, Stated]:
     if begun is None:
         return {}
     if triple := _TRIPLE.match(text, begun.end()):
-        words = f'{place}: "{" ".join(text[begun.start() : triple.end()].split())}"'
-        return {POINT_OF: Stated(tuple(map(float, triple.groups())), words, offered=True)}
+        behind = _TRIPLE_IN.match(text, triple.end())
+        unit, frame = (behind["unit"], behind["frame"]) if behind else (None, None)
+        end = behind.end() if behind and (unit or frame) else triple.end()
+        words = f'{place}: "{" ".join(text[begun.start() : end].split())}"'
+        by = quantity(f"1 {unit or 'm'}", "length")
+        found = {POINT_OF: Stated(tuple(float(f"{float(x) * by:.12g}") for x in triple.groups()), words, offered=True)}
+        return found | ({POINT_FRAME: Stated(frame.upper(), words, offered=True)} if frame else {})
     m = _AT.match(text, begun.end())
     if m is None and (named := _APPOSED.match(text, begun.end())):
         m = _AT.match(text, named.end())
