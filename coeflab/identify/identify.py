@@ -175,8 +175,21 @@ def _identified(
         parameters.name, tuple(s.file for s in series), f"{o.form} form", half, o.seed, o.resamples, tuple(terms),
         tuple(balances), (*map(remark, found), *_shared(shared, series), *_statements(series, body, moving, share, library, half, o, biased)),
         (*(f for f in found if f.code != EDGE), *(f for s in series for f in s.findings),
-         *([Finding.of("record.held", parameters.name, Severity.WARN, each=late)] if late else [])),
+         *([Finding.of("record.held", parameters.name, Severity.WARN, each=late)] if late else []), *_opposite(terms, library, parameters.name)),
     )  # fmt: skip
+
+
+def _opposite(terms: Sequence[IdentifiedTerm], library: Sequence[Candidate], name: str) -> list[Finding]:
+    """Controls of which every term, odd in them, has the other sign than in the file."""
+    out = []
+    of = {primed(t.symbol): t.term for t in library if not t.rate}
+    for control in CONTROLS:
+        both = [t for t in terms if t.value and t.file_value and t.symbol in of and of[t.symbol].odd_in(control)]
+        if both and all(t.value * t.file_value < 0.0 for t in both if t.value and t.file_value):
+            out.append(
+                Finding.of("record.opposite", name, Severity.WARN, columns=[t.symbol for t in both], control=control)
+            )
+    return out
 
 
 def _held(s: MotionSeries) -> MotionSeries:

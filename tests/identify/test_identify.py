@@ -230,6 +230,21 @@ def test_uneven_steps_give_the_same(clean: list[Path], tmp_path: Path) -> None:
         assert max(error(found, s) for s in symbols) < 1e-2
 
 
+def test_a_gap_is_no_filter_and_a_rudder_of_the_other_sign_is_named(clean: list[Path], tmp_path: Path) -> None:
+    """Before: no intervals, "as a filter leaves it"; Ndr' of the other sign than the file's without a word."""
+    files = []
+    for file in noisy(clean, tmp_path, 0.01, 2):
+        head, values = columns(file)
+        values[:, head.index("dr [rad]")] *= -1.0
+        files.append(write(file, head, np.delete(values, slice(400, 500), axis=0)))
+    found = identify_from(files, FILE, {"terms": "file"})
+    assert found["Ndr"].half
+    assert found["Ndr"].value == pytest.approx(-TRUE["Ndr"], rel=0.03)
+    opposite = [f for f in found.findings if f.code == "record.opposite"]
+    assert [f["columns"] for f in opposite] == [("Ydr'", "Ndr'")]
+    assert not [f for f in identify_from(clean[:2], FILE, {"terms": "file"}).findings if f.code == "record.opposite"]
+
+
 def test_verdicts_against_u95(clean: list[Path]) -> None:
     widths = {"Yv'": 1e-3, "Nr'": 1e-12}
     shifted = {"Ydr'": 0.013}
