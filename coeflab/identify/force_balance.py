@@ -29,6 +29,7 @@ from coeflab.motion.vehicle import Vehicle
 # windows is taken as one stretch.
 APART, STRETCH = 0.5, 4.0
 SHARES, MORE, TELLING = 8.0, 1.25, 3e-3
+WHOLE = 1.5  # times the usual time between the rows of a difference; beyond it a gap
 BIASING = 0.05  # of a motion
 NOISE = 0.5  # share of a motion's power: with less of it told twice alike, noise is most of what is seen
 
@@ -144,11 +145,13 @@ def row_noise(s: MotionSeries, apart: int = 1) -> Array:
     ----------
     s : MotionSeries
     apart : int
-        Rows between those of a difference: noise that neighbours share shows where this is more than its memory.
+        Rows between those of a difference: noise that neighbours share shows where this is more than its memory. A difference
+        across a gap of the record would be motion.
     """
-    rows = len(s.time) - 4 * apart
+    rows, wide = len(s.time) - 4 * apart, s.time[4 * apart :] - s.time[: -4 * apart]
     parts = [c * s.velocity[k * apart : k * apart + rows] for k, c in enumerate((1.0, -4.0, 6.0, -4.0, 1.0))]
-    return np.asarray(np.sqrt(np.mean(np.square(sum(parts)), axis=0) / 70.0))
+    whole = wide <= WHOLE * np.median(wide)
+    return np.asarray(np.sqrt(np.mean(np.square(np.sum(parts, axis=0)[whole]), axis=0) / 70.0))
 
 
 def correlated(s: MotionSeries, half: float, least: float = TELLING) -> tuple[str, ...]:

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
+from coeflab.core.finding import Finding, Severity
 from coeflab.core.limits import REPLICATES
 from coeflab.core.machine import one_thread
 from coeflab.core.options import bounded, measured, one_of, parse_options, text, words
@@ -159,19 +160,52 @@ def _identified(
     body = replace(body, law=law)
     terms: list[IdentifiedTerm] = []
     balances = []
+    late: list[str] = []
+    form = weak if o.form == "weak" else differenced
     for c in COMPONENTS:
         mine = [t for t in library if t.component == c]
         if not mine:
             continue
-        balance = (weak if o.form == "weak" else differenced)(series, body, c, mine, half)
+        balance = form(series, body, c, mine, half)
         some, balanced = _component(c, mine, balance, share, parameters, body.water, o)
+        late += _late(some, mine, balance, form([_held(s) for s in series], body, c, mine, half))
         terms += [_of_shared_noise(t, biased) for t in some] if shared else some
         balances.append(balanced)
     return Identified(
         parameters.name, tuple(s.file for s in series), f"{o.form} form", half, o.seed, o.resamples, tuple(terms),
         tuple(balances), (*map(remark, found), *_shared(shared, series), *_statements(series, body, moving, share, library, half, o, biased)),
-        (*(f for f in found if f.code != EDGE), *(f for s in series for f in s.findings)),
+        (*(f for f in found if f.code != EDGE), *(f for s in series for f in s.findings),
+         *([Finding.of("record.held", parameters.name, Severity.WARN, each=late)] if late else []), *_opposite(terms, library, parameters.name)),
     )  # fmt: skip
+
+
+def _opposite(terms: Sequence[IdentifiedTerm], library: Sequence[Candidate], name: str) -> list[Finding]:
+    """Controls of which every term, odd in them, has the other sign than in the file."""
+    out = []
+    of = {primed(t.symbol): t.term for t in library if not t.rate}
+    for control in CONTROLS:
+        both = [t for t in terms if t.value and t.file_value and t.symbol in of and of[t.symbol].odd_in(control)]
+        if both and all(t.value * t.file_value < 0.0 for t in both if t.value and t.file_value):
+            out.append(
+                Finding.of("record.opposite", name, Severity.WARN, columns=[t.symbol for t in both], control=control)
+            )
+    return out
+
+
+def _held(s: MotionSeries) -> MotionSeries:
+    """With controls that keep their value from row to row, which is half a row later."""
+    return replace(s, controls=(s.controls + np.vstack([s.controls[:1], s.controls[:-1]])) / 2.0)
+
+
+def _late(terms: Sequence[IdentifiedTerm], mine: Sequence[Candidate], balance: Products, held: Products) -> list[str]:
+    """Coefficients that held controls move beyond their intervals, with the change."""
+    at = [j for j, t in enumerate(terms) if t.value is not None]
+    moved = (held.solved(at) - balance.solved(at)) / [mine[j].per_prime for j in at]
+    return [
+        f"{t.symbol} {by / t.value:+.0%}"
+        for t, by in zip([terms[j] for j in at], moved, strict=True)
+        if t.value and t.half is not None and abs(by) > t.half
+    ]
 
 
 def _shared(motions: Sequence[str], series: Sequence[MotionSeries]) -> tuple[str, ...]:

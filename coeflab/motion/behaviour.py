@@ -14,6 +14,7 @@ from coeflab.core.wording import listed
 from coeflab.law.force_law import ForceLaw
 from coeflab.law.symbols import COMPONENTS
 from coeflab.law.transforms import force_transfer, velocity_transfer
+from coeflab.motion.root_locus import lacking_accelerations
 from coeflab.motion.simulation import simulate
 from coeflab.motion.small_motions import modes
 from coeflab.motion.vehicle import vehicle
@@ -158,6 +159,8 @@ def _rates(parameters: ParameterFile, speed: float, free: tuple[str, ...]) -> Ar
     """Largest real part first: eigenvalues of small motions about straight ahead, 1/s."""
     result = vehicle(parameters, free)
     at = result.free_columns
+    if lacking := lacking_accelerations(result, at):
+        raise InputError("no added mass", ", ".join(lacking))
     nu = np.zeros(6)
     nu[0] = speed
 

@@ -101,12 +101,17 @@ def root_locus(parameters: ParameterFile, index: str) -> RootLocus:
     roots = np.array([modes(one) for one in matrices])
     critical = _critical(body, index, has_angle, speed, roots[:, 0].real) if has_angle else None
     at = [MOTIONS.index(m) for m in PLANE_OF[index]]
-    lacking = tuple(f"{COMPONENTS[i]}{MOTIONS[i]}dot'" for i in at if body.water.matrix[i, i] <= 0.0)
+    lacking = lacking_accelerations(body, at)
     drawn = _drawn(parameters, body, at, speed, matrices) if critical is not None and not lacking else np.empty(0)
     return RootLocus(
         index, speed, roots, roots_at(body, index, parameters.conditions.speed, has_angle), critical, has_angle,
         _statement(index, has_angle, critical, speed), lacking, drawn,
     )  # fmt: skip
+
+
+def lacking_accelerations(body: Vehicle, at: Sequence[int]) -> tuple[str, ...]:
+    """Accelerations of the motions at these columns that no added mass is known of."""
+    return tuple(f"{COMPONENTS[i]}{MOTIONS[i]}dot'" for i in at if body.water.matrix[i, i] <= 0.0)
 
 
 def _drawn(parameters: ParameterFile, body: Vehicle, at: Sequence[int], speed: Array, matrices: Array) -> Array:

@@ -291,7 +291,10 @@ def _sentence(study: Study, publications: PublishedColumns, rows: tuple[AnswerRo
         compared = ((FITS.load(r.fit).printed_inside, r) for r in study.fits if r.fit in FITS.names())
         inside, printed = map(sum, zip((0, 0), *(count(r) for count, r in compared if count is not None), strict=True))
         words = f"{inside} of {printed} printed coefficients inside their fitted U95" if printed else ""
-        absent = absent or words or "no published evaluation of these data"
+        among = publications.among
+        there = [r.name for r in publications.columns if among is not None and not _about_ours(r, among)]
+        elsewhere = f"{listed(there)}: compared about another point" if there else ""
+        absent = "; ".join(t for t in (elsewhere, absent or words) if t) or "no published evaluation of these data"
     if judged and all(r.status == NO_RESULT for r in rows if r.value is None):
         absent = ""  # their rows say it
     whole = f"{first}; {absent}." if absent else f"{first}."

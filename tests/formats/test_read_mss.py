@@ -64,6 +64,16 @@ def test_si_values_of_the_bluerov() -> None:
     assert any("Xuu read as Xu|u|" in n for n in file.provenance.notes)
 
 
+@pytest.mark.parametrize(
+    ("stated", "law", "si"), [("Yvv = -131; Nvv = -3.18;", "Nv|v|", -3.18), ("Mqq = -9.4; Zqq = -0.63;", "Zq|q|", -0.63),
+                              ("Nvv = -3.18;", "Nvv", -3.18), ("Zww = -131; Mww = 3.18;", "Mw|w|", 3.18),
+                              ("Zww = -131; Zrr = 2;", "Zrr", 2)]
+)  # fmt: skip
+def test_squares_of_a_motion_are_odd_as_its_damping_is(stated: str, law: str, si: float, tmp_path: Path) -> None:
+    """Before: Prestero's Nvv, Yrr, Mww, Zqq were even, so that drift to either side turned the bow to port."""
+    assert reading(tmp_path, SI + stated).coefficient(law).value_si == pytest.approx(si)
+
+
 def test_slug_and_foot_become_si() -> None:
     file = read(DATA / "torpedo_imperial.m")
     pound, foot = 4.4482216152605, 0.3048

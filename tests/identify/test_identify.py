@@ -116,6 +116,27 @@ def test_at_five_per_cent_the_weak_form_stands_where_differences_fail(clean: lis
     assert max(worst) > 0.5
 
 
+def test_controls_that_are_held_over_a_row_move_coefficients_and_by_how_much_stands_beside(
+    clean: list[Path], tmp_path: Path
+) -> None:
+    """Before: intervals of a few tenths of a per cent, values some per cent off, no word."""
+    files = []
+    for file in clean:
+        head, values = columns(file)
+        k = head.index("dr [rad]")
+        values[:-1, k] = (values[:-1, k] + values[1:, k]) / 2.0
+        files.append(write(tmp_path / file.name, head, values))
+    found = identify_from(files, FILE, {"terms": "file"})
+    said = next(f for f in found.findings if f.code == "record.held")
+    shares = dict(re.findall(r"(\S+)' ([-+]\d+)%", " ".join(said["each"])))
+    assert float(shares["Ndr"]) > 2.0
+    for symbol, share in shares.items():
+        t = found[symbol]
+        assert t.value is not None
+        assert abs(t.value - TRUE[symbol]) > (t.half or np.inf)
+        assert t.value * (1.0 + float(share) / 100.0) == pytest.approx(TRUE[symbol], rel=0.02)
+
+
 def test_what_does_not_move_is_not_identifiable(tmp_path: Path) -> None:
     motion = simulate(FILE, "straight_run", {"duration": 60.0}, {"record": 0.05}, free=("u", "v", "r")).trajectory
     (tmp_path / "run.csv").write_bytes(motion_csv(motion))
@@ -209,6 +230,21 @@ def test_uneven_steps_give_the_same(clean: list[Path], tmp_path: Path) -> None:
     for component, symbols in LATERAL.items():
         assert kept(found, component) == symbols
         assert max(error(found, s) for s in symbols) < 1e-2
+
+
+def test_a_gap_is_no_filter_and_a_rudder_of_the_other_sign_is_named(clean: list[Path], tmp_path: Path) -> None:
+    """Before: no intervals, "as a filter leaves it"; Ndr' of the other sign than the file's without a word."""
+    files = []
+    for file in noisy(clean, tmp_path, 0.01, 2):
+        head, values = columns(file)
+        values[:, head.index("dr [rad]")] *= -1.0
+        files.append(write(file, head, np.delete(values, slice(400, 500), axis=0)))
+    found = identify_from(files, FILE, {"terms": "file"})
+    assert found["Ndr"].half
+    assert found["Ndr"].value == pytest.approx(-TRUE["Ndr"], rel=0.03)
+    opposite = [f for f in found.findings if f.code == "record.opposite"]
+    assert [f["columns"] for f in opposite] == [("Ydr'", "Ndr'")]
+    assert not [f for f in identify_from(clean[:2], FILE, {"terms": "file"}).findings if f.code == "record.opposite"]
 
 
 def test_verdicts_against_u95(clean: list[Path]) -> None:

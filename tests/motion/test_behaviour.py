@@ -10,6 +10,7 @@ from coeflab.vehicle.own_numbers import typed_file
 from coeflab.vehicle.parameter_file import ParameterFile
 
 SPEED = 1.5
+ADDED = ("Yvdot'=-.01", "Nrdot'=-.0005")
 HORIZONTAL = ("Yv'=-.05 +- .004", "Nv'=-.01 +- .002", "Yr'=.01 +- .001", "Nr'=-.006 +- .001")
 
 
@@ -54,7 +55,7 @@ def test_indices_about_points_of_other_datums_have_no_difference() -> None:
 
 
 def test_a_plane_that_a_file_knows_nothing_of_has_no_eigenvalues() -> None:
-    found = figures(file(*HORIZONTAL), file(*HORIZONTAL[:2]))
+    found = figures(file(*HORIZONTAL, *ADDED), file(*HORIZONTAL[:2], *ADDED))
     for k in (1, 2):
         one = found[f"eigenvalue {k}, horizontal"]
         assert one.a is not None
@@ -63,3 +64,11 @@ def test_a_plane_that_a_file_knows_nothing_of_has_no_eigenvalues() -> None:
         other = found[f"eigenvalue {k}, vertical, no weight"]
         assert (other.a, other.b, other.difference) == (None, None, None)
         assert "no force by w" in other.reason
+
+
+def test_without_added_mass_a_plane_has_no_eigenvalues() -> None:
+    """Before: those of the rigid body alone, as in air, beside those of the other file."""
+    found = figures(file(*HORIZONTAL, *ADDED), file(*HORIZONTAL))["eigenvalue 1, horizontal"]
+    assert found.a is not None
+    assert (found.b, found.difference) == (None, None)
+    assert "no added mass" in found.reason

@@ -76,6 +76,12 @@ def test_the_experiment_is_the_first_column_and_the_one_compared(beside: Answer)
     assert beside.rows[1].published == (-0.0128, None)
 
 
+def test_a_column_about_another_point_is_compared_there_and_the_page_says_so():
+    """Before: "no published evaluation of these data", while the comparison stood further down."""
+    study = compared(reference(Relation.RE_ANALYSIS, {"Yv": "-0.03"}, "old", reference_point=(9.0, 0.0, 0.0)))
+    assert "old: compared about another point" in answer(study).sentence
+
+
 def test_a_quoted_column_has_the_digits_of_the_report_that_it_rounds(beside: Answer):
     assert beside.rows[0].published[0] == -0.029834
     rounded_otherwise = reference(Relation.RE_ANALYSIS, {"Yv": "-0.0271"}, "report")

@@ -45,7 +45,9 @@ citations = ("sname1950", "fossen2011", "mss")
 reads = "MSS .m"
 signs = "MSS takes Xudot ... and damping such as Yv negative."
 
-OWN_AXES = ("Xuu", "Yvv", "Zww", "Kpp", "Mqq", "Nrr")
+# Squares that stand for x |x|: damping, and by each motion's own the rest of what it does across, as Prestero writes Nvv, Yrr, Mww, Zqq.
+OWN_AXES = {"u": "Xuu", "v": "Yvv", "w": "Zww", "p": "Kpp", "q": "Mqq", "r": "Nrr"}
+ODD = re.compile(r"[YKN](vv|pp|rr)|[ZM](ww|qq)|Xuu")
 TURNING = ("Nv", "Nuv", "Mw", "Muw")
 
 
@@ -236,7 +238,8 @@ def _foreign(found: MFile, path: Path, density: float | None) -> Stated:
         if selected is not None and is_acceleration(symbol):
             continue
         damping = f"{symbol[:2]}|{symbol[2:]}|"
-        if symbol in OWN_AXES and value < 0.0 and damping not in v.values:
+        own_axis = OWN_AXES.get(symbol[-1], "") if ODD.fullmatch(symbol) else ""
+        if v.values.get(own_axis, 0.0) < 0.0 and damping not in v.values:
             squares[symbol] = damping
             coefficients[damping] = (value, "motion")
             continue
@@ -245,7 +248,7 @@ def _foreign(found: MFile, path: Path, density: float | None) -> Stated:
         coefficients[symbol] = (value + own, "rest" if rest else "motion")
     if squares:
         both = ", ".join(f"{a} read as {b}" for a, b in squares.items())
-        notes.append(f"{both}: damping in both directions")
+        notes.append(f"{both}: odd in the motion")
     findings: list[Finding] = []
     mass = _mass(found, v, findings, path.stem)
     afloat = _hydrostatics(found, v)
