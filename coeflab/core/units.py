@@ -277,6 +277,11 @@ def with_unit(value: Any, dimension: str) -> float:
     return quantity(value, dimension)
 
 
+def density_as_written(value: Any) -> Any:
+    """A density as `with_unit` reads it again: one about 1 kg/m^3, as of kinematic forces, with its unit."""
+    return f"{value!r} kg/m^3" if isinstance(value, (int, float)) and GRAMS[0] <= value <= GRAMS[1] else value
+
+
 def quantity(value: Any, dimension: str, *, file: str | Path | None = None, key: str = "") -> float:
     """A number of a TOML file in SI: a bare number is SI already, a text carries its unit (``"13.9792 ft"``).
 

@@ -105,7 +105,7 @@ def numeric(cells: Sequence[str], marks: Marks) -> int:
 
 
 _ATOM = (
-    r"(?:[kMm]?N(?:mm|m)?|lbf?|kgf|gf|[mck]?m|in|[Ff]t|[Ii]nch(?:es)?|(?:[Mm]illi)?[Mm]et(?:er|re)s?|ms|s|sec|min|h|[Dd]eg\.?|[Dd]egrees?|[Gg]rad|[Gg]rd|rad|radians?|°|kn|kts?|knots?|mph|mps|kph|rpm|rps|"
+    r"(?:[kMm]?N(?:mm|m)?|lbf?|kgf|gf|[mck]?m|in|[Ff]t|[Ii]nch(?:es)?|(?:[Mm]illi)?[Mm]et(?:er|re)s?|ms|s|sec|min|h|[Dd]eg\.?|[Dd]egrees?|[Gg]rad|[Gg]rd|rad|radians?|°|kn|kts?|knots?|n(?:oe|œ)uds?|[Kk]noten|nudos|nodi|mph|mps|kph|rpm|rps|"
     r"rev|[kM]?Hz|1|[km]?g|t|slug|[kM]?Pa|m?bar|psi|m?V|m?A|k?W|K|(?:°|[Dd]egr?\.?[ _]?)C|%|‰)"
 )
 _POWER = r"(?:(?:\^|\*\*)?\(?-?[1-4]\)?|[²³⁻¹⁴]+)?"

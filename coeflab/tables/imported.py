@@ -17,7 +17,7 @@ from coeflab.core.text.csv_rows import csv_text
 from coeflab.core.text.toml import toml_text, value
 from coeflab.core.texts import input_error
 from coeflab.core.types import brief
-from coeflab.core.units import quantity
+from coeflab.core.units import density_as_written, quantity
 from coeflab.core.version import VERSION
 from coeflab.core.wording import identifier, one_line
 from coeflab.law.symbols import CONTROL_COLUMNS
@@ -103,7 +103,7 @@ def contents(tables: Sequence[Filled], settings: Settings, source: Path) -> dict
     for key, one in common.items():
         section, _, name = key.partition(".")
         if section != "table":
-            sections[section][name] = one.value
+            sections[section][name] = density_as_written(one.value) if name == "density" else one.value
             comments[key] = one.origin
     halves = [t.settings[HALF_MODEL].value if HALF_MODEL in t.settings else False for t in tables]
     if len(set(map(str, halves))) > 1:
@@ -180,7 +180,7 @@ def own_keys(
         out["constant"] = constant, "one number throughout, while the speed varied"
     model_density = t.raw.stated.get("conditions.density")
     if model_density is not None and not model_density.offered and isinstance(model_density.value, float):
-        out["forces_density"] = model_density.value, f"stated: {model_density.place}"
+        out["forces_density"] = density_as_written(model_density.value), f"stated: {model_density.place}"
     if half and HALF_MODEL in t.settings:
         out["half_model"] = (which := t.settings[HALF_MODEL]).value, which.origin + _of_half(which.value)
     if t.settings[POINT_OF].value != point:

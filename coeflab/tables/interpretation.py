@@ -31,10 +31,10 @@ from coeflab.tables.mapping import (
     another_viscosity,
     assigned,
     entry_of,
-    error_of,
     fault,
     header,
     known_as,
+    meaning_of,
     with_unit,
 )
 from coeflab.tables.proposals import AREA, Proposal, Reason, coefficient_by_sizes, lacks_sizes, may_be_force, taken_as
@@ -135,7 +135,7 @@ def interpreted(
     still: list[tuple[RawColumn, Proposal]] = []
     accepted: set[str] = set()
     for column, offer in zip(raw.columns, offers, strict=True):
-        one = _meaning_of(column, meanings)
+        one = meaning_of(column, meanings, raw.columns)
         if one is not None and lacks_sizes(column, one):
             one = read_column_map(offer.text) if offer.whole else None
         if one is None and offer.whole and (offer.certain or accept):
@@ -322,13 +322,6 @@ def _of_half(offer: Proposal, cut: Cut, frame: Axes | None) -> Proposal:
     )
 
 
-def _meaning_of(column: RawColumn, meanings: Mapping[str, ColumnMap]) -> ColumnMap | None:
-    """What a person said of a column, or of the force whose error it is."""
-    return next(
-        (meanings[name] for name in (column.name, *known_as(column)) if name in meanings), error_of(column, meanings)
-    )
-
-
 def _offers(
     raw: RawTable, meanings: Mapping[str, ColumnMap], settings: Settings, frame: Axes | None, cut: Cut | None
 ) -> tuple[Proposal, ...]:
@@ -336,7 +329,7 @@ def _offers(
     known = {key: settings[key].value for key in (*EXTRA, "scaling.length") if key in settings}
     out = []
     for column, offer in zip(raw.columns, proposals(raw, known, frame), strict=True):
-        one = _meaning_of(column, meanings)
+        one = meaning_of(column, meanings, raw.columns)
         lacks = one is not None and lacks_sizes(column, one)
         out.append(
             coefficient_by_sizes(one, known)
@@ -472,7 +465,7 @@ def _astern(raw: RawTable, back: Assigned, frame: Axes) -> InputError:
 def _possible(raw: RawTable, meanings: Mapping[str, ColumnMap]) -> Iterator[Assigned]:
     """Columns of which what is said of them is possible."""
     for column in raw.columns:
-        one = entry_of(column, meanings)
+        one = entry_of(column, meanings, raw.columns)
         if one is None or one.name == "ignore":
             continue
         try:

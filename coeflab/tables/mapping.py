@@ -88,25 +88,30 @@ def known_as(column: RawColumn) -> tuple[str, ...]:
     return name, f"{name} [{column.unit}]", f"{name} ({column.unit})"
 
 
-def entry_of(column: RawColumn, mapping: Mapping[str, ColumnMap]) -> ColumnMap | None:
-    """What a mapping says of a column, else what its format fixes, else None."""
+def meaning_of(column: RawColumn, mapping: Mapping[str, ColumnMap], columns: Sequence[RawColumn]) -> ColumnMap | None:
+    """What a mapping says of a column of a table, or of the force whose standard error it is; None where it says nothing."""
     for name in (column.name, *known_as(column)):
         if name in mapping:
             return mapping[name]
-    if not column.means:
-        return error_of(column, mapping)
+    of_format = (c for c in columns if c.means and column.means.split()[:1] == [f"se_{c.means.split()[0]}"])
+    forces = [column.name.removeprefix("se_")] * column.name.startswith("se_")
+    of = next(
+        (mapping[n] for n in (*forces, *(n for c in of_format for n in (c.name, *known_as(c)))) if n in mapping), None
+    )
+    if of is None:
+        return None
+    return replace(of, error=True, negative=False) if of.role == "force" else ColumnMap("ignore")
+
+
+def entry_of(column: RawColumn, mapping: Mapping[str, ColumnMap], columns: Sequence[RawColumn]) -> ColumnMap | None:
+    """What a mapping says of a column, `meaning_of`, else what its format fixes, else None."""
+    given = meaning_of(column, mapping, columns)
+    if given is not None or not column.means:
+        return given
     try:
         return read_column_map(column.means)
     except InputError:
         return ColumnMap("label")  # the format knows what it is, and no fit uses it
-
-
-def error_of(column: RawColumn, mapping: Mapping[str, ColumnMap]) -> ColumnMap | None:
-    """What ``se_NAME`` is by what NAME is, as collected runs have them; None for any other column."""
-    of = mapping.get(column.name.removeprefix("se_")) if column.name.startswith("se_") else None
-    if of is None:
-        return None
-    return replace(of, error=True, negative=False) if of.role == "force" else ColumnMap("ignore")
 
 
 def declared_mapping(campaign: Campaign, table: TableDeclaration) -> Mapping[str, ColumnMap]:
@@ -135,7 +140,7 @@ def assigned(raw: RawTable, mapping: Mapping[str, ColumnMap], whole: bool = True
     complaints: list[InputError] = []
     taken: dict[str, str] = {}
     for column in raw.columns:
-        given = entry_of(column, mapping)
+        given = entry_of(column, mapping, raw.columns)
         if given is None:
             complaints.append(fault("tables.unidentified_column", raw, column, own=shown(column.name)))
             continue

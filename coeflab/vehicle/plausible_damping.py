@@ -123,7 +123,7 @@ def _signs(own: list[_Own], signs: str, p: ParameterFile) -> list[Check]:
     if drives:
         out.append(Check.of(
             "plausibility.drives", ", ".join(primed(o.term.symbol) for o in drives), Severity.FAIL, signs=f" {signs}".rstrip(),
-            values=", ".join(f"{o.term.coefficient:.4g}" for o in drives), count="one" if len(drives) == 1 else "many",
+            values=", ".join(f"{_in_si(o.term, p):.4g}" for o in drives), count="one" if len(drives) == 1 else "many",
         ))  # fmt: skip
     for o in own:
         if not o.odd and o.term.component in "YKN":
@@ -131,6 +131,12 @@ def _signs(own: list[_Own], signs: str, p: ParameterFile) -> list[Check]:
             facts = {"force": name[0], "motion": o.motion}
             out.append(Check.of("plausibility.one_way", name, Severity.WARN, statistic=o.term.coefficient, **facts))
     return out
+
+
+def _in_si(term: ForceTerm, p: ParameterFile) -> float:
+    """The number as the file has it at its speed, not the factor of its product."""
+    c = p.coefficient(term.symbol)
+    return term.coefficient if c is None or c.value_si is None else c.value_si
 
 
 def _rates(p: ParameterFile, own: list[_Own]) -> list[Check]:

@@ -500,6 +500,24 @@ def test_a_folder_of_runs_becomes_a_campaign_that_weighs_its_points(runs: Path, 
     assert in_place.files[1].sha256 == sha256_of(runs, [runs / n / FILE for n in RUNS])
 
 
+def test_kinematic_forces_of_a_solver_keep_their_density_with_its_unit(stub: Path, tmp_path: Path) -> None:
+    """rhoInf 1: primes by 1 kg/m^3 of forces of 1 kg/m^3, in campaign.toml as it is read again."""
+    for seed, (name, beta) in enumerate(RUNS.items()):
+        stated = {"conditions.density": 1.0, "conditions.speed": 2.0, "axes.reference_point": [1.2, 0.0, 0.0]}
+        write_run(tmp_path / "runs" / name, {"X": 13e-3, "Y": 3e-3 * beta}, seed=seed, stated=stated)
+    said = {k: v for k, v in SAID.items() if not k.startswith("conditions.")}
+    done = invoke("import", tmp_path / "runs", "--out", tmp_path / "out", "--name", "b{beta:deg:m=-}", "--yes",
+                  *[a for k, v in said.items() for a in ("--set", f"{k}={v}")])  # fmt: skip
+    assert done.exit_code == 0, done.output
+    table = table_of(tmp_path / "out")
+    assert table.conditions.density == 1.0
+    assert (
+        re.findall(r'density = "1.0 kg/m\^3"', (tmp_path / "out" / "campaign.toml").read_text())
+        == ['density = "1.0 kg/m^3"'] * 2
+    )
+    assert table.forces["Y"] == pytest.approx([3e-3 * b for b in RUNS.values()], rel=5e-3, abs=1e-5)
+
+
 def in_check(table: ForceTable) -> list[str]:
     """What the check of conditions warns of."""
     return [c.subject for c in conditions.check(SimpleNamespace(tables=[table])) if c.severity is Severity.WARN]  # type: ignore[arg-type]

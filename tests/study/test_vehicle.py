@@ -467,6 +467,24 @@ def test_a_mesh_that_is_longest_across_is_a_warning(steered: Study, tmp_path: Pa
     assert longest_axis.check(steered) == []  # no mesh
 
 
+@pytest.mark.parametrize(
+    ("datum", "nose_at", "severities"),
+    [("nose", 0.0, ()), ("midship", 1.0, ()), ("stern", 2.0, ()), ("origin", 0.0, ()), ("tow_point", 0.3, ()),
+     ("midship", 0.0, ("warn",)), ("stern", 0.0, ("warn",)), ("nose", 1.0, ("warn",)), ("bow", 2.0, ("warn",))],
+)  # fmt: skip
+def test_a_datum_whose_name_the_mesh_contradicts_warns(
+    steered: Study, tmp_path: Path, datum: str, nose_at: float, severities: tuple[str, ...]
+) -> None:
+    """A bar of 2 m: moments of tables about another midship would move by 1 m with no word."""
+    bar = trimesh.creation.box(extents=(2.0, 0.2, 0.2)).apply_translation((nose_at - 1.0, 0.0, 0.0))
+    bar.export(tmp_path / "bar.stl")
+    body = subject(str(tmp_path / "bar.stl"), "m", "FLU")
+    body = replace(body, datum=replace(body.datum, id=datum))
+    shape = replace(steered.shape, weighed=replace(steered.shape.weighed, body=body))
+    *found, _ = longest_axis.check(replace(steered, shape=shape))
+    assert tuple(str(c.severity) for c in found) == severities
+
+
 def test_a_centre_of_gravity_far_from_the_hull_is_refused(bare: Body) -> None:
     with pytest.raises(
         InputError, match=r"a centre of gravity 1\.6\d* m from .*; expected at most half the length of the body, 1\.5 m"

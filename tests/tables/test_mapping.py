@@ -22,7 +22,7 @@ from coeflab.tables.force_table import ForceTable
 from coeflab.tables.form import Group, screen
 from coeflab.tables.importers import PlannedTable
 from coeflab.tables.interpretation import interpreted
-from coeflab.tables.mapping import assigned, with_unit
+from coeflab.tables.mapping import assigned, entry_of, with_unit
 from coeflab.tables.parts import Part
 from coeflab.tables.proposals import proposed
 from coeflab.tables.raw_table import RawColumn, RawTable
@@ -656,3 +656,16 @@ def test_a_form_says_that_forces_are_of_the_whole_body_unless_a_half_is_declared
     more = ["--set", f"campaign.half_model={half}"] if half else []
     said = CliRunner().invoke(app, ["import", str(file), "--out", str(tmp_path / "out"), *more]).output
     assert ("whole body" in said) == (not half)
+
+
+@pytest.mark.parametrize(
+    ("typed", "error"), [("drag [N]", "se_drag"), ("-Y [N]", "se_Y"), ("ignore", "ignore"), ("", "se_X")]
+)
+def test_a_standard_error_follows_its_force_when_a_format_names_both(typed: str, error: str) -> None:
+    """Forces of a mesh that was turned in the flow are drag and side force: se_X of the case is then that of the drag."""
+    values = np.ones(3)
+    columns = (RawColumn("Fx", "N", values, means="X"), RawColumn("se_X", "N", values, means="se_X"))
+    said = {"Fx": read_column_map(typed)} if typed else {}
+    found = entry_of(columns[1], said, columns)
+    assert found is not None
+    assert found.plain == error

@@ -137,6 +137,13 @@ def test_an_index_counts_the_rows_and_is_asked_of_nobody(tmp_path: Path) -> None
     assert texts(tmp_path / "c.csv", lines(",alpha,CL,CD", rows=setting))["column 1"] == ""
 
 
+@pytest.mark.parametrize("unit", ["noeuds", "nœuds", "Knoten", "nudos", "nodi"])
+def test_a_speed_in_knots_of_other_languages_is_one(unit: str, tmp_path: Path) -> None:
+    """A constant column of an unknown unit is ignored: 4 knots were then typed as 4 m/s."""
+    found = texts(tmp_path / "k.csv", lines(f"beta (°),Vitesse ({unit}),Fy (N)", rows=[f"{a},4.0,{a}" for a in ANGLES]))
+    assert found["Vitesse"] == "U [kn]"
+
+
 def test_v_is_the_speed_of_a_resistance_test_and_fr_a_froude_number(tmp_path: Path) -> None:
     found = texts(
         tmp_path / "r.csv",

@@ -16,6 +16,7 @@ from coeflab.study.plan import plan_at
 from coeflab.study.run import run
 from coeflab.study.study import Study
 from coeflab.vehicle.driving_terms import moved_to_zero
+from coeflab.vehicle.own_numbers import typed_file
 from coeflab.vehicle.plausibility import plausibility
 from coeflab.vehicle.plausible_damping import driving_terms
 
@@ -94,3 +95,10 @@ def test_what_is_stated_is_not_touched(tmp_path: Path) -> None:
         for c in file.coefficients
     )
     assert any(c.severity is Severity.FAIL for c in plausibility(file.model_copy(update={"coefficients": wrong})))
+
+
+def test_a_driving_slope_is_shown_as_the_file_has_it_at_its_speed() -> None:
+    """0.049 * 1/2 * 1025 * 1.8 * 1.96^2 = 173.6 N/(m/s), not the 96.5 of its product with U."""
+    file = typed_file("t", ["Yv'=0.049"], length="1.96 m", length_name="LOA", speed="1.8", density="1025", about="cg")
+    (found,) = (c for c in plausibility(file) if c.severity is Severity.FAIL)
+    assert "173.6 (SI)" in str(found.statistic)
