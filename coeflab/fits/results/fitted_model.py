@@ -23,7 +23,7 @@ from coeflab.law.symbols import ANGULAR
 from coeflab.law.terms import Term, design
 from coeflab.tables.force_table import AT_REST, SAME_SIZE
 
-DIGITS = "rounding of the printed digits"  # what a table leaves out behind its last digit
+DIGITS = "rounding of printed digits"  # what a table leaves out behind its last digit
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -43,7 +43,7 @@ class SweepRows:
 
 def held(table: ForceTable, variable: str) -> float:
     """Angle, rad, at which every row of a sweep of ``variable`` holds the other one, drift or attack; zero where it holds none."""
-    if variable not in ACROSS:
+    if variable not in ACROSS or not len(table):
         return 0.0
     other = incidence(*(np.asarray(table.motion[m]) for m in LINEAR))[("alpha", "beta").index(ACROSS[variable][1])]
     several = _settings(table.primed_motion(variable, table.scaling.length)) >= FEWEST_SETTINGS
