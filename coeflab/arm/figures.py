@@ -32,7 +32,7 @@ from coeflab.report.document import Figure
 from coeflab.report.figures import form_facets, part_pictures
 from coeflab.report.figures.artists import text_width
 from coeflab.report.figures.body import OBLIQUE
-from coeflab.report.figures.body_view import Sheet, View, outline_path
+from coeflab.report.figures.body_view import Sheet, oblique, outline_path
 from coeflab.report.figures.laws import Plot, Trace, laws_figure
 from coeflab.report.figures.palette import COLOURS
 from coeflab.report.figures.panel import WIDTH, drawing
@@ -163,14 +163,7 @@ def in_sight(points: Array, hull: Part, toward: Array) -> NDArray[np.bool_]:
     return np.asarray((within <= 0.0) | (np.sqrt(np.maximum(within, 0.0)) <= b))
 
 
-AZIMUTH, ELEVATION = np.radians(-62.0), np.radians(22.0)
-
-
-def _from_port() -> View:
-    level = np.array([np.cos(AZIMUTH), np.sin(AZIMUTH), 0.0])
-    toward = np.cos(ELEVATION) * level + np.sin(ELEVATION) * np.array([0.0, 0.0, -1.0])
-    right = np.array([np.sin(AZIMUTH), -np.cos(AZIMUTH), 0.0])
-    return View("from ahead, port and above", np.array([right, np.cross(toward, right), toward]))
+FROM_PORT = oblique("from ahead, port and above", -62.0, 22.0)
 
 
 def frames_figure(motion: ArmMotion, anchor: str, caption: str) -> Figure:
@@ -179,7 +172,7 @@ def frames_figure(motion: ArmMotion, anchor: str, caption: str) -> Figure:
     shape = parts_at(motion, 0)
     at = kane.pose(chain, motion.states[0, 7 : 7 + chain.count])
     frames = [(chain.attachment, chain.mount), *zip(at.origin[1:], at.rotation[1:], strict=True)]
-    view, reach = _from_port(), [ARROW * (1.0 - 0.2 * k) for k in range(len(frames))]
+    view, reach = FROM_PORT, [ARROW * (1.0 - 0.2 * k) for k in range(len(frames))]
     tips = np.array([origin + ARROW * axis for origin, turn in frames for axis in np.asarray(turn).T])
     earth = np.array([[0.9, -1.0, 0.7]])
     corners = np.vstack([_corners(shape), tips, earth, earth + ARROW * np.eye(3)])

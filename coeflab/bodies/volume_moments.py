@@ -18,14 +18,15 @@ def second_moments(shape: Shape) -> Array:
         along = float(section @ (shape.x - shape.centre_of_volume[0]) ** 2)
         across = float(section @ shape.radius**2) / 4.0
         return np.diag([along, across, across])
-    return _of_parts(shape)
+    return parts_spread(shape) / shape.volume
 
 
-def _of_parts(shape: Parts) -> Array:
+def parts_spread(shape: Parts) -> Array:
+    """(3, 3) second moments of the volume of parts about its centre, m^5."""
     total, middle = np.zeros((3, 3)), shape.centre_of_volume
     for p in shape.parts:
         total += p.form.volume * (p.second_moments + np.outer(p.centre - middle, p.centre - middle))
-    return total / shape.volume
+    return total
 
 
 def displaced(shape: Shape, density: float, point: Array) -> Array:

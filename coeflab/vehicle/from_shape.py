@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from coeflab.bodies.mass_model import at_rest, rest_words
 from coeflab.bodies.shape import Parts, Revolution
+from coeflab.bodies.volume_moments import parts_spread
 from coeflab.core.errors import InputError, shown
 from coeflab.core.texts import input_error, text_of
 from coeflab.core.types import Array, dataclass, locked
@@ -250,11 +251,7 @@ def spread_of(body: Body, configuration: Configuration) -> Array:
         across = float(area @ shape.radius**2) / 4.0
         return np.diag([along, across, across])
     if isinstance(shape, Parts):
-        middle, out = shape.centre_of_volume, np.zeros((3, 3))
-        for p in shape.parts:
-            off = p.centre - middle
-            out += p.form.volume * (p.rotation @ np.diag(p.form.spread) @ p.rotation.T + np.outer(off, off))
-        return out
+        return parts_spread(shape)
     return np.array(shape.integrals.second_moments)
 
 

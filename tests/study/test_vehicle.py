@@ -14,9 +14,12 @@ import trimesh
 
 from coeflab import estimates as methods
 from coeflab.bodies.body import Body
+from coeflab.bodies.forms import Box, Faceted
 from coeflab.bodies.mass_model import MassModel, MassPart
+from coeflab.bodies.mesh.mesh import TriangleMesh
 from coeflab.bodies.pieces import Control
 from coeflab.bodies.readers import read_body
+from coeflab.bodies.shape import Part, Parts
 from coeflab.bodies.simplify.source import subject
 from coeflab.bodies.thrusters import Thruster
 from coeflab.cli.vehicle import typed
@@ -30,6 +33,7 @@ from coeflab.formats.loss import Loss
 from coeflab.law.added_mass import AddedMass
 from coeflab.law.coefficient import Coefficient, CoefficientSet, Status
 from coeflab.law.symbols import derivative
+from coeflab.law.transforms import rotation
 from coeflab.motion.simulation import simulate
 from coeflab.report.content import document
 from coeflab.report.first_page import answer
@@ -228,6 +232,18 @@ def test_the_inertia_of_displaced_water_is_that_of_the_spheroid(bare: Body) -> N
     )
     mass = weighed(bare, Stated(500.0), 998.2).configuration.mass
     assert np.diag(mass.inertia_matrix) == pytest.approx(500.0 / 5.0 * np.array([2.0 * b**2, a**2 + b**2, a**2 + b**2]))
+
+
+def test_a_faceted_part_spreads_as_its_box(bare: Body) -> None:
+    """Its moments are a matrix; their diagonal alone was taken, and added to every row."""
+    box, turn = trimesh.creation.box(extents=(2.0, 0.5, 0.25)), rotation(0.3, -0.2, 0.5)
+    facets = Faceted.about_its_centre(TriangleMesh(np.array(box.vertices), np.array(box.faces)))[0]
+    one, other = (
+        spread_of(replace(bare, shape=Parts((Part("hull", form, np.zeros(3), turn),))), replace(bare.configurations[0], second_moments=None))
+        for form in (facets, Box(2.0, 0.5, 0.25))
+    )  # fmt: skip
+    assert one == pytest.approx(other, abs=1e-12)
+    assert abs(other[0, 1]) > 0.01
 
 
 def test_an_inertia_that_no_body_has_is_refused(bare: Body) -> None:

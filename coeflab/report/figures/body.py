@@ -16,7 +16,7 @@ from coeflab.bodies.shape import OTHER, Part, Parts
 from coeflab.core.types import Array
 from coeflab.report.document import Figure
 from coeflab.report.figures import part_pictures
-from coeflab.report.figures.body_view import BEHIND, HATCH, STRIPE, Sheet, View, outline_path
+from coeflab.report.figures.body_view import BEHIND, HATCH, STRIPE, Sheet, View, oblique, outline_path
 from coeflab.report.figures.palette import COLOURS
 from coeflab.report.figures.rulers import BELOW, LEFT, rulers
 from coeflab.report.figures.svg import paper, settings, svg_text
@@ -26,20 +26,10 @@ from coeflab.report.texts import text_of
 WIDTH, MARGIN, GAP, CAPTION, LABELS = 680.0, 14.0, 18.0, 27.0, 20.0
 TALLEST_VIEWS, TALLEST_OBLIQUE = 420.0, 300.0
 LABELLED, LETTER, TITLED = 14, 4.7, 50.0
-AZIMUTH, ELEVATION = np.radians(52.0), np.radians(24.0)
-
-
-def _oblique() -> Array:
-    level = np.array([np.cos(AZIMUTH), np.sin(AZIMUTH), 0.0])
-    toward = np.cos(ELEVATION) * level + np.sin(ELEVATION) * np.array([0.0, 0.0, -1.0])
-    right = np.array([np.sin(AZIMUTH), -np.cos(AZIMUTH), 0.0])
-    return np.array([right, np.cross(toward, right), toward])
-
-
 SIDE = View("side, from starboard", np.array([[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]]))
 FRONT = View("front, from ahead", np.array([[0.0, -1.0, 0.0], [0.0, 0.0, -1.0], [1.0, 0.0, 0.0]]))
 TOP = View("top, from above", np.array([[1.0, 0.0, 0.0], [0.0, -1.0, 0.0], [0.0, 0.0, -1.0]]))
-OBLIQUE = View("from ahead, starboard and above", _oblique())
+OBLIQUE = oblique("from ahead, starboard and above", 52.0, 24.0)
 
 
 @as_users_wrote

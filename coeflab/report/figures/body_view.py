@@ -39,6 +39,14 @@ class View:
     axes: Array
 
 
+def oblique(title: str, azimuth: float, elevation: float) -> View:
+    """Seen from so many degrees to starboard of ahead, and so many above."""
+    a, e = np.radians(azimuth), np.radians(elevation)
+    toward = np.cos(e) * np.array([np.cos(a), np.sin(a), 0.0]) + np.sin(e) * np.array([0.0, 0.0, -1.0])
+    right = np.array([np.sin(a), -np.cos(a), 0.0])
+    return View(title, np.array([right, np.cross(toward, right), toward]))
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class Sheet:
     """A view at its place on the paper.
