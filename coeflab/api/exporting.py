@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from coeflab.api.parameters import HasParameters, parameters_of
+from coeflab.api.questions import above_zero
 from coeflab.core.errors import InputError
 from coeflab.core.files import write_all
 from coeflab.core.texts import text_of
@@ -13,9 +14,10 @@ from coeflab.formats import EXPORTERS, loss_tables
 from coeflab.formats.export import Export, loss_refused
 from coeflab.formats.export import export as rendered
 from coeflab.formats.lacking_law import without_law
+from coeflab.vehicle.other_water import in_water
 from coeflab.vehicle.parameter_file import ParameterFile
 
-__all__ = ["Export", "ParameterFile", "export", "loss_refused", "loss_tables", "require_targets", "without_law"]
+__all__ = ["Export", "ParameterFile", "export", "in_water", "loss_refused", "loss_tables", "require_targets", "without_law"]
 
 
 def export(
@@ -25,6 +27,7 @@ def export(
     *,
     accept_loss: bool = False,
     accelerations: str = "measured",
+    density: float | str | None = None,
 ) -> Export:
     """Files of a simulator, and what they lose.
 
@@ -39,6 +42,8 @@ def export(
     accept_loss : bool
         Write although the target cannot hold everything; ``loss`` says what is lost.
     accelerations : {"measured", "computed"}
+    density : float or str, optional
+        Of the water, kg/m^3; default the file's. Primes, mass and volume stay.
 
     Returns
     -------
@@ -59,6 +64,8 @@ def export(
     'remus100.coefficients.csv'
     """
     parameters = parameters_of(vehicle)
+    if density is not None:
+        parameters = in_water(parameters, above_zero(density, "density", "density"))
     result = rendered(parameters, to, accelerations, accept_loss=accept_loss)
     if out is not None:
         if not accept_loss and not result.lossless:

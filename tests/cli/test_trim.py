@@ -117,7 +117,10 @@ def test_a_linear_model_as_tables_files_and_json(coeflab: Run, tmp_path: Path) -
     assert [s["name"] for s in model["states"]] == ["u", "v", "r"]
     assert [s["rate_unit"] for s in model["states"]] == ["m/s^2", "m/s^2", "rad/s^2"]
     assert [c["unit"] for c in model["commands"]] == ["N", "rad"]
-    assert model["a"][2][1] == pytest.approx(-4.5029, abs=5e-5)
+    assert model["A"][2][1] == pytest.approx(-4.5029, abs=5e-5)
+    assert [model[k] for k in "ABCD"] == [model[k] for k in "abcd"]
+    assert model["state_names"] == ["u", "v", "r"]
+    assert model["command_names"] == [c["name"] for c in model["commands"]]
     assert [m["eigenvalue"] for m in model["modes"]] == found["eigenvalues"]
     assert "linear" not in json.loads(coeflab(*LINEAR, "--json").stdout)
 

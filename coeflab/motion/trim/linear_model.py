@@ -240,8 +240,18 @@ def _saved(models: Sequence[LinearModel], path: Path, speeds: Sequence[float] | 
 
 
 def as_json(model: LinearModel) -> dict[str, Any]:
-    """One linear model as a JSON object, SI and rad; rows are rates of the states, in their order."""
+    """One linear model as a JSON object, SI and rad; rows are rates of the states, in their order.
+
+    A to D and the names are as in .mat and .npz; a to d, of earlier versions, are the same.
+    """
+    names = _names(model)
     return {
+        "state_names": names["states"],
+        "command_names": names["commands"],
+        "A": model.A.tolist(),
+        "B": model.B.tolist(),
+        "C": model.C.tolist(),
+        "D": model.D.tolist(),
         "states": [
             {"name": s.name, "unit": s.unit, "rate_unit": unit, "value": s.value}
             for s, unit in zip(model.states, model.rate_units, strict=True)
