@@ -115,6 +115,13 @@ def proposals(
 
 def _beside_the_flow(out: list[Proposal], taken: Mapping[str, str]) -> list[Proposal]:
     """X and Z beside lift and drag are these turned, and left; a drag beside a force of the body alone has its other reading."""
+    if {"beta", "v"} & taken.keys() and not {"alpha", "w"} & taken.keys():
+        out = [
+            replace(one, text="ignore", why=f"{one.why}; no column alpha")
+            if one.meaning and one.meaning.name == "lift"
+            else one
+            for one in out
+        ]
     if {"lift", "drag"} <= taken.keys():
         body = [
             one.meaning is not None and one.meaning.name in ("X", "Z") and not one.meaning.error and not one.certain
@@ -147,6 +154,9 @@ def _still(one: Proposal, column: RawColumn, rounded: bool) -> Proposal:
     """A column of zeros that is asked is of no use to a fit."""
     zeros = not one.text and len(column.values) > 0 and not column.is_text and not np.any(column.values)
     return Proposal("ignore", f"{one.why}; {OF_ROUNDING if rounded else STILL}") if zeros else one
+
+
+_UNNAMED = re.compile(r"column \d+")
 
 
 def _is_index(column: RawColumn) -> bool:
@@ -255,6 +265,8 @@ def _of_company(
             what = "a Mach number" if is_mach else "a count"
             note = f"{what} by its values beside coefficients; {one.text[0]} [{OPEN}] if it is the moment"
             return Proposal("ignore", note, note=note)
+    if bare in vocabulary().lists["angle"] and "lift" in names and not {"alpha", "beta", "v", "w"} & names:
+        return replace(proposed(replace(column, name="alpha"), stated), certain=False, note="one angle beside lift")
     alone = "drag" in names and not {"Y", "N", "side", "beta", "r"} & names
     if bare == "v" and alone and fits(column.unit, "speed") and known.size and known.min() >= 0.0:
         return Proposal(f"U [{column.unit}]", "its unit, over a resistance alone")
@@ -301,6 +313,11 @@ def _without_strangers(raw: RawTable, out: list[Proposal]) -> list[Proposal]:
         if not one.text and one.why.startswith(UNKNOWN) and raw.columns[i].name.strip() != "V"
     ]  # fmt: skip
     roles, many = {one.role for one in out}, len(strange) > MOST_ASKED
+    bare = [i for i in strange if _UNNAMED.fullmatch(raw.columns[i].name)]
+    if "force" in roles and roles & VARIED:
+        out = [
+            replace(one, text="ignore", note="a column without name") if i in bare else one for i, one in enumerate(out)
+        ]
     if len(strange) <= FEW_STRANGE or "force" not in roles or roles.isdisjoint(VARIED | {"speed"} if many else VARIED):
         return out
     settings = [c.values for c, one in zip(raw.columns, out, strict=True) if one.role in VARIED]

@@ -14,6 +14,7 @@ import numpy as np
 
 from coeflab.core.errors import shown
 from coeflab.core.text.bounded import stream_of
+from coeflab.core.texts import input_error
 from coeflab.core.types import Array
 from coeflab.core.units import parse_header
 from coeflab.law.symbols import COMPONENTS, CONTROL_COLUMNS, CONTROLS, MOTIONS
@@ -350,6 +351,14 @@ def read_head(
         return Head(plain, own, unit_line=units[0] if units else 0, remarks=tuple(remarks))
     group = next((r for r in reversed(rows) if r[0] < names[0]), None)
     return _head(names, units, group, remarks)
+
+
+def head_in_order(names: str, width: int, path: Path) -> Head:
+    """The head that a person says: names of the first columns between commas; a dash names none."""
+    cells = [" ".join(c.split()) for c in names.split(",")]
+    if len(cells) > width:
+        raise input_error("tables.names_over_wider_rows", path, many=len(cells), ending="s", width=width)
+    return _head((0, ["" if c in _DASHES else c for c in cells] + [""] * (width - len(cells))), None, None, ())
 
 
 WORDS = 5  # of a name at most

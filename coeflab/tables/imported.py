@@ -28,7 +28,16 @@ from coeflab.tables.evidence import SLENDER
 from coeflab.tables.force_table import ForceTable
 from coeflab.tables.importers.csv import read as read_house
 from coeflab.tables.levels import levels_of
-from coeflab.tables.mapping import Assigned, doubtful, mapped_table, row_name, texts_of, usable_rows, without_a_setting
+from coeflab.tables.mapping import (
+    Assigned,
+    doubtful,
+    mapped_table,
+    places,
+    row_name,
+    texts_of,
+    usable_rows,
+    without_a_setting,
+)
 from coeflab.tables.raw_table import HALF_MODEL, RawTable
 from coeflab.tables.settings import ARM_POINT, CONFIRMED, EACH, OF_ARMS, REFERENCE, SECTIONS, Settings
 from coeflab.tables.words.points import POINT_OF
@@ -365,7 +374,7 @@ def _table(
     comments = [f"Made by `coeflab import` from {one_line(raw.path.name)}; all digits of the file."]
     left = sorted(set(range(len(raw))) - set(rows.tolist()))
     if left:
-        comments.append("Left out, a setting has no number: " + ", ".join(row_name(raw, row) for row in left) + ".")
+        comments.append(f"Left out, no number or another level: {places(raw, left)}.")
     return csv_text([heads, *zip(*cells, strict=True)], comments).encode(), labels
 
 

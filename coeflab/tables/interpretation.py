@@ -246,6 +246,8 @@ def _no_table(raw: RawTable, offers: Sequence[Proposal]) -> InputError | None:
         "or ignore" in o.why and ALLOWED_FORCES & set(o.why.split(": ")[-1][:1]) for o in offers
     ):
         return None
+    for blank in (c for c in raw.columns if named_as(c.name) in FORCES and not np.any(np.isfinite(c.values))):
+        return fault("tables.no_number_in_column", raw, blank, example="")
     names = listed([shown(c.name) for c in raw.columns[:MOST_IDLE]])
     if "propeller" in roles and any(o.why == PROPELLER for o in offers):
         return input_error("tables.propeller_alone", raw.path, names=names)
@@ -268,7 +270,7 @@ def _no_table(raw: RawTable, offers: Sequence[Proposal]) -> InputError | None:
     return input_error(
         "tables.forces_over_settings", raw.path,
         found=over or f"no name of a force{', an angle, a speed or a rate' * (not roles & {*SETTINGS})}: {names}",
-        advice=f'{IDENTIFY} ' * bool(over) + 'If it is one of forces, name its columns: --map "COLUMN=Y [N]", or by --words FILE.toml.',
+        identify=f"{IDENTIFY} " * bool(over),
     )  # fmt: skip
 
 

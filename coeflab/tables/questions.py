@@ -111,6 +111,11 @@ def _asked(key: str, default: str = "", words: str = "", **facts: object) -> Que
     return Question(key, default=default, **worded)
 
 
+def names_in_order() -> Question:
+    """The question for the names of all columns of a table that has none."""
+    return _asked("names")
+
+
 def questions(
     raw: RawTable, columns: Sequence[Assigned], settings: Settings, shows: Sequence[Evidence] = (),
     likely: Sequence[str] = (), offers: Sequence[Proposal] = (), primes: bool = False,

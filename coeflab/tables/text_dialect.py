@@ -14,7 +14,7 @@ from statistics import median
 
 from coeflab.core.errors import InputError, shown
 from coeflab.core.limits import CSV_LINE, TABLE_COLUMNS
-from coeflab.core.options import bounded, one_of
+from coeflab.core.options import bounded, one_of, text
 from coeflab.core.text.bounded import stream_of
 from coeflab.core.texts import input_error
 from coeflab.tables.dialect import (
@@ -26,6 +26,7 @@ from coeflab.tables.dialect import (
     Marks,
     Row,
     explained,
+    head_in_order,
     is_name_row,
     is_unit_row,
     numbered,
@@ -42,6 +43,7 @@ _ENCODINGS = (
     "utf-8", "utf-16", "utf-16-le", "utf-16-be", "cp1252", "latin-1", "cp437", "mac-roman", "shift_jis", "euc_kr", "gb18030",
 )  # fmt: skip
 SEEN, FEWEST_NAMED = 12, 3  # rows that tell a head from the first of them; names over columns of numbers
+POLAR = "Calculated polar for"  # over a polar of XFOIL and XFLR5, whose first column is alpha in degrees
 FEWEST_SHORT = 2  # rows: one alone was cut
 RULE = re.compile(r"[-=+|:_ \t]*(?:---|===|___|:-+:?|-+:)[-=+|:_ \t]*")
 _ERRORS = tuple(ERRORS)
@@ -68,6 +70,8 @@ class Options:
         Empty to find it out: a byte-order mark, else UTF-8, else cp1252.
     comment : str
         What begins a comment line; empty for each of # % // !.
+    columns : str
+        Names of all, in order and between commas, such as alpha [deg], CL, -, Cm; empty to find them.
     """
 
     delimiter: str = one_of("", "", *DELIMITERS)
@@ -77,6 +81,7 @@ class Options:
     units: int = bounded(0, -1, 1_000_000)
     encoding: str = one_of("", "", *_ENCODINGS)
     comment: str = one_of("", "", *COMMENTS, "none")
+    columns: str = text("")
 
 
 class AmbiguousError(InputError):
@@ -378,6 +383,8 @@ def _head(
 ) -> tuple[Head, list[str]]:
     """The names over the line ``start`` (counted from 1)."""
     delimiter, marks, width, filled = dialect
+    if options.columns:
+        return head_in_order(options.columns, width, path), []
     comments = _comments(options)
     above: list[Row] = []
     remarks: list[str] = []
@@ -394,6 +401,9 @@ def _head(
             cells = _over_rule(lines[n - 1], ruled, width)
             if cells is None and delimiter == " " and not remark:
                 cells = _over_cells(lines[n - 1], lines[start - 1], width)
+        if cells is None and not above and delimiter != " " and any(POLAR in text for text in lines[: n - 1]):
+            named = split_line(bare, delimiter)  # XFLR5 writes columns behind the last name
+            cells = named + [""] * (width - len(named)) if 2 * len(named) > width > len(named) else None
         asked = n in (options.header, options.units)
         if (
             cells is None
@@ -463,7 +473,7 @@ def sniff(path: Path, options: Options) -> TextDialect:
         places.insert(0, (begin + 1, begin + 1))  # 1e-3 and the like over the data, read as numbers
     for first, top in places:
         body = [c for _, c in rows[top : run[1]]]
-        filled = max(k + 1 for c in body for k, cell in enumerate(c) if cell)
+        filled = max(k + 1 for c in body for k, cell in enumerate(c) if numeric([cell], marks))
         head, remarks = _head(lines, rows[first][0], (delimiter, marks, width, filled), numbers_below, options, path)
         if head.unit_line == rows[begin][0]:
             break

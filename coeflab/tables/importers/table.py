@@ -31,7 +31,6 @@ summary = "any delimited text: delimiter, decimal mark, units and encoding detec
 citations = ()
 reads = "tables of delimited text"
 
-POLAR = "Calculated polar for"  # over a polar of XFOIL and XFLR5, whose alpha is in degrees
 _BLOCK = 1 << 20  # letters
 _COMMENT_BEGINS = frozenset(c[0] for c in text_dialect.COMMENTS)
 _PLAIN = re.compile(r"[-+]?[0-9][-+.,0-9eE]*")
@@ -279,7 +278,7 @@ def raw(path: Path, options: Mapping[str, Any]) -> RawTable:
         raise text_dialect.unread(path, why) from None
     texts = {k: t for k, t in body.texts.items() if k in textual}
     columns, remarks = raw_columns(dialect.head, body.whole_columns(), texts, body.met)
-    if any(POLAR in text for text in dialect.above):
+    if any(text_dialect.POLAR in text for text in dialect.above):
         columns = tuple(replace(c, unit="deg") if not c.unit and named_as(c.name) == "alpha" else c for c in columns)
     lines = np.concatenate(body.lines)
     titles = [Title(0, 0, text) for text in dialect.above]
