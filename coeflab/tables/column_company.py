@@ -94,7 +94,7 @@ def proposals(
     out = _beside_the_flow(out, taken)
     if len(doubles := [o for o in out if not o.text and o.why.endswith(" already")]) > FEW_STRANGE:
         out = [replace(o, text="ignore", note=o.why) if o in doubles else o for o in out]
-    out = _without_strangers(raw, out)
+    out = without_strangers(raw, out)
     for i, column in enumerate(raw.columns):
         # V is the speed beside what says where the water comes from, and over a resistance; alone it may be a sway velocity in capitals.
         over = {"drag"} - {
@@ -156,6 +156,7 @@ def _still(one: Proposal, column: RawColumn, rounded: bool) -> Proposal:
     return Proposal("ignore", f"{one.why}; {OF_ROUNDING if rounded else STILL}") if zeros else one
 
 
+_SPREAD = re.compile(r"_(std|min|max|rms|ci)$")
 _UNNAMED = re.compile(r"column \d+")
 
 
@@ -303,21 +304,26 @@ def _of_company(
     return one
 
 
-def _without_strangers(raw: RawTable, out: list[Proposal]) -> list[Proposal]:
+def without_strangers(raw: RawTable, out: list[Proposal], said: bool = False) -> list[Proposal]:
     """Of many columns that neither name nor unit says anything of, those that cannot be a setting are of no use.
 
-    Nothing is left out where no force or no setting is known without them.
+    Nothing is left out where no force or no setting is known without them. Where a person said which columns are the forces, others
+    with a word of a force in their names are none, such as CL_XFOIL and Delta_CL.
     """
     strange = [
         i for i, one in enumerate(out)
         if not one.text and one.why.startswith(UNKNOWN) and raw.columns[i].name.strip() != "V"
     ]  # fmt: skip
     roles, many = {one.role for one in out}, len(strange) > MOST_ASKED
-    bare = [i for i in strange if _UNNAMED.fullmatch(raw.columns[i].name)]
     if "force" in roles and roles & VARIED:
-        out = [
-            replace(one, text="ignore", note="a column without name") if i in bare else one for i, one in enumerate(out)
-        ]
+        named = [i for i, c in enumerate(raw.columns) if not _UNNAMED.fullmatch(c.name)]
+        last = max(named, default=len(raw.columns)) * (raw.header_line > 0)  # one before it may be a setting
+        left = {i: "a column without name" for i in strange if named and i not in named and i > last}
+        forced = {i: raw.columns[i].name for i in strange if _has_a_force(raw.columns[i].name)}
+        left |= {i: "spread of a force" for i, name in forced.items() if _SPREAD.search(name)}
+        left |= dict.fromkeys(forced if said else (), "another force is said")
+        out = [replace(one, text="ignore", note=left[i]) if i in left else one for i, one in enumerate(out)]
+        strange = [i for i in strange if i not in left]
     if len(strange) <= FEW_STRANGE or "force" not in roles or roles.isdisjoint(VARIED | {"speed"} if many else VARIED):
         return out
     settings = [c.values for c, one in zip(raw.columns, out, strict=True) if one.role in VARIED]
@@ -356,6 +362,13 @@ def _is_of_a_force(name: str, names: Set[str]) -> bool:
     bases = {base for base, force in forces.items() if force in FORCES}
     companion = any(base.startswith(f"{own}_") and forces[base] == named_as(own) for base in bases)
     return companion or not bases.isdisjoint({own, own[:-1]})
+
+
+def _has_a_force(name: str) -> bool:
+    """Whether a word of a name is that of a force, or its last ones are of what no fit uses: Delta_CL, c_M_LE, XFOIL_CDp."""
+    words = re.split(r"[_\W]+", re.sub(r"^c_", "c", name.strip()))
+    tails = {named_as(" ".join(words[k:])) for k in range(len(words))}
+    return "ignore" in tails or any(len(word) > 1 and named_as(word) in FORCES for word in words)
 
 
 def _like_a_setting(values: Array, settings: Sequence[Array]) -> bool:

@@ -16,7 +16,7 @@ from coeflab.core.units import SI, quantity
 from coeflab.core.wording import listed
 from coeflab.law.symbols import LINEAR
 from coeflab.tables.campaign import Cut, cut_of
-from coeflab.tables.column_company import FEW_STRANGE, PROPELLER, proposals
+from coeflab.tables.column_company import FEW_STRANGE, PROPELLER, proposals, without_strangers
 from coeflab.tables.column_map import ANGLES, FORCES, WIND, ColumnMap, read_column_map, unturned
 from coeflab.tables.column_names import UNKNOWN, named_as
 from coeflab.tables.evidence import Evidence, across_planes, astern, evidence, turn_of
@@ -346,7 +346,12 @@ def _offers(
             if cut
             else offer
         )
-    return tuple(out)
+    said = [_meaning_of(column, meanings) for column in raw.columns]
+    if not any(one is not None and one.role == "force" for one in said):
+        return tuple(out)
+    known_too = [replace(offer, text=str(one)) if one else offer for one, offer in zip(said, out, strict=True)]
+    left = without_strangers(raw, known_too, said=True)
+    return tuple(offer if one else alone for one, offer, alone in zip(said, out, left, strict=True))
 
 
 def _in_vain(
