@@ -115,13 +115,6 @@ def proposals(
 
 def _beside_the_flow(out: list[Proposal], taken: Mapping[str, str]) -> list[Proposal]:
     """X and Z beside lift and drag are these turned, and left; a drag beside a force of the body alone has its other reading."""
-    if {"beta", "v"} & taken.keys() and not {"alpha", "w"} & taken.keys():
-        out = [
-            replace(one, text="ignore", why=f"{one.why}; no column alpha")
-            if one.meaning and one.meaning.name == "lift"
-            else one
-            for one in out
-        ]
     if {"lift", "drag"} <= taken.keys():
         body = [
             one.meaning is not None and one.meaning.name in ("X", "Z") and not one.meaning.error and not one.certain
@@ -268,6 +261,8 @@ def _of_company(
             return Proposal("ignore", note, note=note)
     if bare in vocabulary().lists["angle"] and "lift" in names and not {"alpha", "beta", "v", "w"} & names:
         return replace(proposed(replace(column, name="alpha"), stated), certain=False, note="one angle beside lift")
+    if one.meaning and one.meaning.name == "lift" and {"beta", "v"} & names and not {"alpha", "w"} & names:
+        return replace(one, text="ignore", why=f"{one.why}; no column alpha")
     alone = "drag" in names and not {"Y", "N", "side", "beta", "r"} & names
     if bare == "v" and alone and fits(column.unit, "speed") and known.size and known.min() >= 0.0:
         return Proposal(f"U [{column.unit}]", "its unit, over a resistance alone")

@@ -56,13 +56,7 @@ class Marks:
         point = re.escape(self.decimal)
         grouped = ""
         if self.thousands:
-            mark = (
-                f"[ {BLANKS}]"
-                if self.thousands == " "
-                else "['’]"
-                if self.thousands == "'"
-                else re.escape(self.thousands)
-            )
+            mark = {" ": f"[ {BLANKS}]", "'": "['’]"}.get(self.thousands, re.escape(self.thousands))
             grouped = rf"|[-+]?[1-9][0-9]{{0,2}}(?:{mark}[0-9]{{3}})+(?:{point}[0-9]*)?"
         return re.compile(rf"[-+]?(?:[0-9]+(?:{point}[0-9]*)?|{point}[0-9]+)(?:[eEdD][-+]?[0-9]+)?{grouped}")
 
@@ -319,23 +313,12 @@ def read_head(
     """
     rows = list(above)
     remarks = []
-    while (
-        named == 0
-        and united == 0
-        and len(rows) > 1
-        and _is_empty(rows[-1][1], numbers)
-        and is_name_row(rows[-2][1], marks, numbers)
-    ):
+    while not (named or united) and _is_under_names(rows, marks, numbers) and _is_empty(rows[-1][1], numbers):
         remarks.append(f"line {rows[-1][0]}: left out, no number in it ({shown(' '.join(filter(None, rows[-1][1])))})")
         rows.pop()
     units: Row | None = next((r for r in rows if r[0] == united), None)
-    if (
-        united == 0
-        and len(rows) > 1
-        and is_unit_row(rows[-1][1], numbers, rows[-2][1])
-        and is_name_row(rows[-2][1], marks, numbers)
-        and named != rows[-1][0]
-    ):
+    under = united == 0 and _is_under_names(rows, marks, numbers) and named != rows[-1][0]
+    if under and is_unit_row(rows[-1][1], numbers, rows[-2][1]):
         units = rows[-1]
         if any(marks.number(c) is not None and c not in _DASHES for c in units[1]):
             remarks.append(
@@ -385,6 +368,10 @@ def explained(head: Head, lines: Sequence[str]) -> Head:
     names = tuple(f"{name}: {words[name][0]}" if name in words else name for name in head.names)
     units = tuple(words[name][1] if name in words else "" for name in head.names)
     return replace(head, names=names, units=units, units_stand="in a legend above the names")
+
+
+def _is_under_names(rows: Sequence[Row], marks: Marks, numbers: Set[int]) -> bool:
+    return len(rows) > 1 and is_name_row(rows[-2][1], marks, numbers)
 
 
 def _is_empty(cells: Sequence[str], numbers: Set[int]) -> bool:

@@ -134,11 +134,8 @@ def column_lines(raw: RawTable, found: Interpretation) -> Iterator[Line]:
     """The lines of the columns."""
     doubts = {d.column.name: d for d in found.doubts}
     still = {column.name: offer for column, offer in found.open}
-    if (
-        not raw.header_line
-        and len(still) == len(raw.columns) > 1
-        and {o.text for o in still.values()} <= {"", "ignore", "point"}
-    ):
+    nothing = len(still) == len(raw.columns) > 1 and {o.text for o in still.values()} <= {"", "ignore", "point"}
+    if nothing and not raw.header_line:
         names = names_in_order()
         yield Line("columns", "", names.choices, Group.OPEN, names.asks, argument("--option", "columns", OPEN), True)
         return

@@ -28,16 +28,7 @@ from coeflab.tables.evidence import SLENDER
 from coeflab.tables.force_table import ForceTable
 from coeflab.tables.importers.csv import read as read_house
 from coeflab.tables.levels import levels_of
-from coeflab.tables.mapping import (
-    Assigned,
-    doubtful,
-    mapped_table,
-    places,
-    row_name,
-    texts_of,
-    usable_rows,
-    without_a_setting,
-)
+from coeflab.tables.mapping import Assigned, doubtful, mapped_table, row_name, texts_of, usable_rows, without_a_setting
 from coeflab.tables.raw_table import HALF_MODEL, RawTable
 from coeflab.tables.settings import ARM_POINT, CONFIRMED, EACH, OF_ARMS, REFERENCE, SECTIONS, Settings
 from coeflab.tables.words.points import POINT_OF
@@ -45,6 +36,7 @@ from coeflab.tables.words.points import POINT_OF
 LONG = {short: name for name, short in CONTROL_COLUMNS.items()}
 TABLE = "table.csv"
 SAVED = "mapping.toml"
+MOST_NAMED = 200  # rows that the table names as left out
 
 
 @brief
@@ -374,7 +366,10 @@ def _table(
     comments = [f"Made by `coeflab import` from {one_line(raw.path.name)}; all digits of the file."]
     left = sorted(set(range(len(raw))) - set(rows.tolist()))
     if left:
-        comments.append(f"Left out, no number or another level: {places(raw, left)}.")
+        first = ", ".join(row_name(raw, row) for row in left[:MOST_NAMED])
+        comments.append(
+            f"Left out, no number or another level: {first}{f' and {len(left) - MOST_NAMED} more' * (len(left) > MOST_NAMED)}."
+        )
     return csv_text([heads, *zip(*cells, strict=True)], comments).encode(), labels
 
 

@@ -405,24 +405,15 @@ def _head(
             named = split_line(bare, delimiter)  # XFLR5 writes columns behind the last name
             cells = named + [""] * (width - len(named)) if 2 * len(named) > width > len(named) else None
         asked = n in (options.header, options.units)
-        if (
-            cells is None
-            and not remark
-            and not asked
-            and numeric(found := split_line(bare, delimiter), marks) == len(found)
-        ):
+        found, lacks = split_line(bare, delimiter), cells is None and not remark
+        if lacks and not asked and numeric(found, marks) == len(found):
             remarks.append(f"line {n}: left out, {len(found)} of {width} cells")
             continue
-        if (cells is None and asked) or (
-            cells is None
-            and not remark
-            and not above
-            and options.header == 0
-            and (delimiter == " " or delimiter in bare)
-        ):
-            many = len(split_line(bare, delimiter))
+        split = delimiter == " " or delimiter in bare
+        if (cells is None and asked) or (lacks and not above and options.header == 0 and split):
+            many = len(found)
             raise input_error("tables.names_over_wider_rows", path, n, many=many, ending="s" * (many != 1), width=width)
-        if cells is None and not above and not remark and max(options.header, options.units) <= 0:
+        if lacks and not above and max(options.header, options.units) <= 0:
             break
         if cells is not None and (asked or not remark or not above or len(above) == 1):
             above.insert(0, (n, cells))
@@ -482,13 +473,8 @@ def sniff(path: Path, options: Options) -> TextDialect:
     numbers = tuple(k for k in range(width) if any(numeric([c[k]], marks) for c in body))
     words = frozenset(k for c in body for k in range(width) if marks.number(c[k]) is None)
     ends_of = {len(c[-1].partition(marks.decimal)[2]) for c in body[:-1]} if len(body) > 3 else {-1}
-    used = sorted(
-        {
-            next(p for p in comments if line.lstrip().startswith(p))
-            for line in lines
-            if is_comment(line.lstrip(), comments)
-        }
-    )
+    used = sorted({p for line in lines for p in comments if is_comment(line.lstrip(), (p,))})
+    marked = encoding.endswith("-sig") and sample.startswith(codecs.BOM_UTF8)
     phrases = {
         "delimiter": next(name for name, d in DELIMITERS.items() if d == delimiter),
         "decimal mark": MARK_NAMES[marks.decimal],
@@ -496,12 +482,7 @@ def sniff(path: Path, options: Options) -> TextDialect:
         "header": f"line {head.line}" if head.line else "none",
         "units": head.units_stand,
         "comments": " ".join(used) or "none",
-        "encoding": encoding.removesuffix("-sig")
-        + (
-            " with byte-order mark"
-            if (encoding.endswith("-sig") and sample.startswith(codecs.BOM_UTF8)) or encoding == "utf-16"
-            else ""
-        ),
+        "encoding": encoding.removesuffix("-sig") + " with byte-order mark" * (marked or encoding == "utf-16"),
         "line ends": ends,
     }
     over = list(_above(lines[: rows[begin][0] - 1], head, delimiter, comments))

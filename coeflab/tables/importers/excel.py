@@ -22,19 +22,9 @@ from coeflab.core.text.bounded import stream_of, whole_bytes
 from coeflab.core.texts import input_error
 from coeflab.core.types import Array
 from coeflab.core.wording import listed
+from coeflab.tables import dialect
 from coeflab.tables.blocks import Title, with_blocks
-from coeflab.tables.dialect import (
-    Cells,
-    Head,
-    Marks,
-    Row,
-    head_in_order,
-    is_unit_row,
-    numbered,
-    numeric,
-    raw_columns,
-    read_head,
-)
+from coeflab.tables.dialect import Cells, Head, Marks, Row, is_unit_row, numbered, numeric, raw_columns, read_head
 from coeflab.tables.raw_table import RawTable, SeveralError
 from coeflab.tables.words.above import words_above
 from coeflab.tables.workbook_size import errors_in
@@ -238,7 +228,7 @@ def _body(rows: list[list[Value]], options: Options, path: Path) -> tuple[int, H
 
 def _head_over(rows: list[list[Value]], begin: int, numbers: Set[int], options: Options, path: Path) -> Head:
     if options.columns:
-        return head_in_order(options.columns, len(rows[0]), path)
+        return dialect.head_in_order(options.columns, len(rows[0]), path)
     above: list[Row] = []
     for i in range(begin - 1, max(begin - 12, -1), -1):
         cells = [_text(v) for v in rows[i]]
