@@ -508,12 +508,8 @@ def _single_column(
     """Tell two columns of whole numbers from one column with decimal commas."""
     delimiter, rows, run = found
     body = [line for n, line in rows_read if rows[run[0]][0] <= n <= rows[run[1] - 1][0]]
-    if (
-        delimiter != ","
-        or run[2] != 2
-        or options.delimiter
-        or not all(re.fullmatch(r"\s*[-+]?\d+,\d+\s*", b) for b in body)
-    ):
+    two = delimiter == "," and run[2] == 2 and not options.delimiter
+    if not two or not all(re.fullmatch(r"\s*[-+]?\d+,\d+\s*", b) for b in body):
         return found
     above = [line for line in lines[: rows[run[0]][0] - 1] if line.strip()]
     named = above[-1] if above else ""

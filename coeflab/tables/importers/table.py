@@ -34,6 +34,7 @@ reads = "tables of delimited text"
 _BLOCK = 1 << 20  # letters
 _COMMENT_BEGINS = frozenset(c[0] for c in text_dialect.COMMENTS)
 _PLAIN = re.compile(r"[-+]?[0-9][-+.,0-9eE]*")
+_RULED = frozenset("-=+|:_")
 _NESTED = frozenset("{[")  # what a table does not begin with
 _PIECE = 32  # lines: where a block has a cell without number, most of its pieces have none
 
@@ -141,11 +142,8 @@ class _Body:
             if len(cells) == d.width and _PLAIN.fullmatch(cells[d.numbers[0]]):
                 return cells
         stripped = text.strip()
-        if (
-            not stripped
-            or text_dialect.is_comment(stripped, d.comments)
-            or (stripped[0] in "-=+|:_" and text_dialect.RULE.fullmatch(stripped))
-        ):
+        ruled = stripped[:1] in _RULED and text_dialect.RULE.fullmatch(stripped)
+        if not stripped or ruled or text_dialect.is_comment(stripped, d.comments):
             return None
         cells = text_dialect.split_line(text, d.delimiter)
         while len(cells) > d.width and not cells[-1]:
