@@ -149,7 +149,7 @@ def _still(one: Proposal, column: RawColumn, rounded: bool) -> Proposal:
     return Proposal("ignore", f"{one.why}; {OF_ROUNDING if rounded else STILL}") if zeros else one
 
 
-_SPREAD = re.compile(r"_(std|min|max|rms|ci)$")
+_SPREAD = frozenset({"std", "min", "max", "rms", "ci"})
 _UNNAMED = re.compile(r"column \d+")
 
 
@@ -315,7 +315,7 @@ def without_strangers(raw: RawTable, out: list[Proposal], said: bool = False) ->
         last = max(named, default=len(raw.columns)) * (raw.header_line > 0)  # one before it may be a setting
         left = {i: "a column without name" for i in strange if named and i not in named and i > last}
         forced = {i: raw.columns[i].name for i in strange if _has_a_force(raw.columns[i].name)}
-        left |= {i: "spread of a force" for i, name in forced.items() if _SPREAD.search(name)}
+        left |= {i: "spread of a force" for i, name in forced.items() if name.rpartition("_")[2] in _SPREAD}
         left |= dict.fromkeys(forced if said else (), "another force is said")
         out = [replace(one, text="ignore", note=left[i]) if i in left else one for i, one in enumerate(out)]
         strange = [i for i in strange if i not in left]

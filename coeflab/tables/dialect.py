@@ -340,7 +340,7 @@ def head_in_order(names: str, width: int, path: Path) -> Head:
     """The head that a person says: names of the first columns between commas; a dash names none."""
     cells = [" ".join(c.split()) for c in names.split(",")]
     if len(cells) > width:
-        raise input_error("tables.names_over_wider_rows", path, many=len(cells), ending="s", width=width)
+        raise input_error("tables.too_many_names", path, many=len(cells), width=width)
     return _head((0, ["" if c in _DASHES else c for c in cells] + [""] * (width - len(cells))), None, None, ())
 
 
