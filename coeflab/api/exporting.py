@@ -17,7 +17,16 @@ from coeflab.formats.lacking_law import without_law
 from coeflab.vehicle.other_water import in_water
 from coeflab.vehicle.parameter_file import ParameterFile
 
-__all__ = ["Export", "ParameterFile", "export", "in_water", "loss_refused", "loss_tables", "require_targets", "without_law"]
+__all__ = [
+    "Export",
+    "ParameterFile",
+    "export",
+    "in_water",
+    "loss_refused",
+    "loss_tables",
+    "require_targets",
+    "without_law",
+]
 
 
 def export(

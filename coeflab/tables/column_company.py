@@ -100,7 +100,7 @@ def proposals(
     out = _beside_the_flow(out, taken)
     if len(doubles := [o for o in out if not o.text and o.reason is Reason.REPEATED]) > FEW_STRANGE:
         out = [replace(o, text="ignore", note=o.why) if o in doubles else o for o in out]
-    out = _without_strangers(raw, out)
+    out = without_strangers(raw, out)
     for i, column in enumerate(raw.columns):
         # V is the speed beside what says where the water comes from, and over a resistance; alone it may be a sway velocity in capitals.
         over = {"drag"} - {
@@ -153,6 +153,10 @@ def _still(one: Proposal, column: RawColumn, rounded: bool) -> Proposal:
     """A column of zeros that is asked is of no use to a fit."""
     zeros = not one.text and len(column.values) > 0 and not column.is_text and not np.any(column.values)
     return Proposal("ignore", f"{one.why}; {OF_ROUNDING if rounded else STILL}", reason=one.reason) if zeros else one
+
+
+_SPREAD = frozenset({"std", "min", "max", "rms", "ci"})
+_UNNAMED = re.compile(r"column \d+")
 
 
 def _is_index(column: RawColumn) -> bool:
@@ -261,6 +265,10 @@ def _of_company(
             what = "a Mach number" if is_mach else "a count"
             note = f"{what} by its values beside coefficients; {one.text[0]} [{OPEN}] if it is the moment"
             return Proposal("ignore", note, note=note)
+    if bare in vocabulary().lists["angle"] and "lift" in names and not {"alpha", "beta", "v", "w"} & names:
+        return replace(proposed(replace(column, name="alpha"), stated), certain=False, note="one angle beside lift")
+    if one.meaning and one.meaning.name == "lift" and {"beta", "v"} & names and not {"alpha", "w"} & names:
+        return replace(one, text="ignore", why=f"{one.why}; no column alpha")
     alone = "drag" in names and not {"Y", "N", "side", "beta", "r"} & names
     if bare == "v" and alone and fits(column.unit, "speed") and known.size and known.min() >= 0.0:
         return Proposal(f"U [{column.unit}]", "its unit, over a resistance alone")
@@ -297,16 +305,26 @@ def _of_company(
     return one
 
 
-def _without_strangers(raw: RawTable, out: list[Proposal]) -> list[Proposal]:
+def without_strangers(raw: RawTable, out: list[Proposal], confirmed: bool = False) -> list[Proposal]:
     """Of many columns that neither name nor unit says anything of, those that cannot be a setting are of no use.
 
-    Nothing is left out where no force or no setting is known without them.
+    Nothing is left out where no force or no setting is known without them. Where a person said which columns are the forces, others
+    with a word of a force in their names are none, such as CL_XFOIL and Delta_CL.
     """
     strange = [
         i for i, one in enumerate(out)
         if not one.text and one.reason is Reason.UNKNOWN and raw.columns[i].name.strip() != "V"
     ]  # fmt: skip
     roles, many = {one.role for one in out}, len(strange) > MOST_ASKED
+    if "force" in roles and roles & VARIED:
+        named = [i for i, c in enumerate(raw.columns) if not _UNNAMED.fullmatch(c.name)]
+        last = max(named, default=len(raw.columns)) * (raw.header_line > 0)  # one before it may be a setting
+        left = {i: "a column without name" for i in strange if named and i not in named and i > last}
+        forced = {i: raw.columns[i].name for i in strange if _has_a_force(raw.columns[i].name)}
+        left |= {i: "spread of a force" for i, name in forced.items() if name.rpartition("_")[2] in _SPREAD}
+        left |= dict.fromkeys(forced if confirmed else (), "another force is named")
+        out = [replace(one, text="ignore", note=left[i]) if i in left else one for i, one in enumerate(out)]
+        strange = [i for i in strange if i not in left]
     if len(strange) <= FEW_STRANGE or "force" not in roles or roles.isdisjoint(VARIED | {"speed"} if many else VARIED):
         return out
     settings = [c.values for c, one in zip(raw.columns, out, strict=True) if one.role in VARIED]
@@ -345,6 +363,13 @@ def _is_of_a_force(name: str, names: Set[str]) -> bool:
     bases = {base for base, force in forces.items() if force in FORCES}
     companion = any(base.startswith(f"{own}_") and forces[base] == named_as(own) for base in bases)
     return companion or not bases.isdisjoint({own, own[:-1]})
+
+
+def _has_a_force(name: str) -> bool:
+    """Whether a word of a name is that of a force, or its last ones are of what no fit uses: Delta_CL, c_M_LE, XFOIL_CDp."""
+    words = re.split(r"[_\W]+", re.sub(r"^c_", "c", name.strip()))
+    tails = {named_as(" ".join(words[k:])) for k in range(len(words))}
+    return "ignore" in tails or any(len(word) > 1 and named_as(word) in FORCES for word in words)
 
 
 def _like_a_setting(values: Array, settings: Sequence[Array]) -> bool:

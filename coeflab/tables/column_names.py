@@ -31,11 +31,8 @@ def name_of(column: RawColumn) -> tuple[str, str, bool]:
     named = {n: why for p in parts for n, why, _ in [_whole_name(replace(column, name=error + p))] if n}
     if len(named) == 1:
         return (*named.popitem(), False)
-    if (
-        not named
-        and (wind := vocabulary().of_flow(column.name))
-        and (fits(column.unit, "force") or either_unit(column.unit, "force")[0])
-    ):
+    wind = vocabulary().of_flow(column.name)
+    if not named and wind and (fits(column.unit, "force") or either_unit(column.unit, "force")[0]):
         return f"{error}{wind}", f"a word of its name, {TURNED.format(ACROSS[wind])}", False
     return "", f"{' or '.join(named)} by its name" if named else UNKNOWN, False
 

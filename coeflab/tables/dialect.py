@@ -14,6 +14,7 @@ import numpy as np
 
 from coeflab.core.errors import shown
 from coeflab.core.text.bounded import stream_of
+from coeflab.core.texts import input_error
 from coeflab.core.types import Array
 from coeflab.core.units import parse_header
 from coeflab.law.symbols import COMPONENTS, CONTROL_COLUMNS, CONTROLS, MOTIONS
@@ -55,13 +56,7 @@ class Marks:
         point = re.escape(self.decimal)
         grouped = ""
         if self.thousands:
-            mark = (
-                f"[ {BLANKS}]"
-                if self.thousands == " "
-                else "['’]"
-                if self.thousands == "'"
-                else re.escape(self.thousands)
-            )
+            mark = {" ": f"[ {BLANKS}]", "'": "['’]"}.get(self.thousands, re.escape(self.thousands))
             grouped = rf"|[-+]?[1-9][0-9]{{0,2}}(?:{mark}[0-9]{{3}})+(?:{point}[0-9]*)?"
         return re.compile(rf"[-+]?(?:[0-9]+(?:{point}[0-9]*)?|{point}[0-9]+)(?:[eEdD][-+]?[0-9]+)?{grouped}")
 
@@ -318,23 +313,12 @@ def read_head(
     """
     rows = list(above)
     remarks = []
-    while (
-        named == 0
-        and united == 0
-        and len(rows) > 1
-        and _is_empty(rows[-1][1], numbers)
-        and is_name_row(rows[-2][1], marks, numbers)
-    ):
+    while not (named or united) and _is_under_names(rows, marks, numbers) and _is_empty(rows[-1][1], numbers):
         remarks.append(f"line {rows[-1][0]}: left out, no number in it ({shown(' '.join(filter(None, rows[-1][1])))})")
         rows.pop()
     units: Row | None = next((r for r in rows if r[0] == united), None)
-    if (
-        united == 0
-        and len(rows) > 1
-        and is_unit_row(rows[-1][1], numbers, rows[-2][1])
-        and is_name_row(rows[-2][1], marks, numbers)
-        and named != rows[-1][0]
-    ):
+    under = united == 0 and _is_under_names(rows, marks, numbers) and named != rows[-1][0]
+    if under and is_unit_row(rows[-1][1], numbers, rows[-2][1]):
         units = rows[-1]
         if any(marks.number(c) is not None and c not in _DASHES for c in units[1]):
             remarks.append(
@@ -350,6 +334,14 @@ def read_head(
         return Head(plain, own, unit_line=units[0] if units else 0, remarks=tuple(remarks))
     group = next((r for r in reversed(rows) if r[0] < names[0]), None)
     return _head(names, units, group, remarks)
+
+
+def head_in_order(names: str, width: int, path: Path) -> Head:
+    """The head that a person says: names of the first columns between commas; a dash names none."""
+    cells = [" ".join(c.split()) for c in names.split(",")]
+    if len(cells) > width:
+        raise input_error("tables.too_many_names", path, many=len(cells), width=width)
+    return _head((0, ["" if c in _DASHES else c for c in cells] + [""] * (width - len(cells))), None, None, ())
 
 
 WORDS = 5  # of a name at most
@@ -376,6 +368,10 @@ def explained(head: Head, lines: Sequence[str]) -> Head:
     names = tuple(f"{name}: {words[name][0]}" if name in words else name for name in head.names)
     units = tuple(words[name][1] if name in words else "" for name in head.names)
     return replace(head, names=names, units=units, units_stand="in a legend above the names")
+
+
+def _is_under_names(rows: Sequence[Row], marks: Marks, numbers: Set[int]) -> bool:
+    return len(rows) > 1 and is_name_row(rows[-2][1], marks, numbers)
 
 
 def _is_empty(cells: Sequence[str], numbers: Set[int]) -> bool:

@@ -27,6 +27,7 @@ PLANES = {"pitch": (("alpha", "w", "q"), "M"), "yaw": (("beta", "v", "r"), "N")}
 OTHER_PLANE = {"pitch": "yaw", "yaw": "pitch"}
 STILL = 0.1  # of the span of Y or N: a span of Z or M that is none
 SLENDER = "a slender body has"  # in what infers a sign from the force that should follow from it
+NEAR = np.radians(15.0)  # of an angle of the flow: beyond it a body may stall, and nothing shows its sign
 CLEAR = 0.8  # correlation beyond which a slope has a sign
 
 
@@ -353,6 +354,8 @@ def trend(force: Array, data: Mapping[str, Array], setting: str) -> int:
     """Sign of a force's slope over a setting while the others rest; 0 where it is not clear."""
     x = data[setting]
     ok = np.isfinite(force) & np.isfinite(x)
+    if setting in ("alpha", "beta") and np.unique(x[near := ok & (np.abs(x) <= NEAR)]).size >= 3:
+        ok = near
     still = ok.copy()
     for name, values in data.items():
         if name in ("alpha", "beta", "v", "w", "p", "q", "r", "dr", "ds", "db") and name != setting:

@@ -17,7 +17,7 @@ from coeflab.tables.column_map import ColumnMap, read_column_map
 from coeflab.tables.interpretation import Doubt, Interpretation
 from coeflab.tables.mapping import with_unit
 from coeflab.tables.proposals import OPEN, Proposal
-from coeflab.tables.questions import Question, without_unit
+from coeflab.tables.questions import Question, names_in_order, without_unit
 from coeflab.tables.raw_table import HALF_MODEL, RawColumn, RawTable
 from coeflab.tables.settings import (
     EXTRA,
@@ -134,6 +134,11 @@ def column_lines(raw: RawTable, found: Interpretation) -> Iterator[Line]:
     """The lines of the columns."""
     doubts = {d.column.name: d for d in found.doubts}
     still = {column.name: offer for column, offer in found.open}
+    nothing = len(still) == len(raw.columns) > 1 and {o.text for o in still.values()} <= {"", "ignore", "point"}
+    if nothing and not raw.header_line:
+        names = names_in_order()
+        yield Line("columns", "", names.choices, Group.OPEN, names.asks, argument("--option", "columns", OPEN), True)
+        return
     for column, offer in zip(raw.columns, found.proposals, strict=True):
         name, span = column.name, _span(column)
         if offer.certain and name in raw.dialect:  # told in the head of the form

@@ -36,6 +36,7 @@ from coeflab.tables.words.points import POINT_OF
 LONG = {short: name for name, short in CONTROL_COLUMNS.items()}
 TABLE = "table.csv"
 SAVED = "mapping.toml"
+MOST_NAMED = 200  # rows that the table names as left out
 
 
 @brief
@@ -365,7 +366,10 @@ def _table(
     comments = [f"Made by `coeflab import` from {one_line(raw.path.name)}; all digits of the file."]
     left = sorted(set(range(len(raw))) - set(rows.tolist()))
     if left:
-        comments.append("Left out, a setting has no number: " + ", ".join(row_name(raw, row) for row in left) + ".")
+        first = ", ".join(row_name(raw, row) for row in left[:MOST_NAMED])
+        comments.append(
+            f"Left out, no number or another level: {first}{f' and {len(left) - MOST_NAMED} more' * (len(left) > MOST_NAMED)}."
+        )
     return csv_text([heads, *zip(*cells, strict=True)], comments).encode(), labels
 
 

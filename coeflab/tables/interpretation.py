@@ -16,7 +16,7 @@ from coeflab.core.units import SI, quantity
 from coeflab.core.wording import listed
 from coeflab.law.symbols import LINEAR
 from coeflab.tables.campaign import Cut, cut_of
-from coeflab.tables.column_company import FEW_STRANGE, proposals
+from coeflab.tables.column_company import FEW_STRANGE, proposals, without_strangers
 from coeflab.tables.column_map import ANGLES, FORCES, WIND, ColumnMap, read_column_map, unturned
 from coeflab.tables.column_names import named_as
 from coeflab.tables.evidence import Evidence, across_planes, astern, evidence, turn_of
@@ -242,6 +242,8 @@ def _no_table(raw: RawTable, offers: Sequence[Proposal]) -> InputError | None:
         )  # fmt: skip
     if roles & {"force", "error"} or any(map(may_be_force, offers, raw.columns)):
         return None
+    for blank in (c for c in raw.columns if named_as(c.name) in FORCES and not np.any(np.isfinite(c.values))):
+        return fault("tables.no_number_in_column", raw, blank, example="")
     names = listed([shown(c.name) for c in raw.columns[:MOST_IDLE]])
     if "propeller" in roles and any(o.reason is Reason.PROPELLER for o in offers):
         return input_error("tables.propeller_alone", raw.path, names=names)
@@ -264,7 +266,7 @@ def _no_table(raw: RawTable, offers: Sequence[Proposal]) -> InputError | None:
     return input_error(
         "tables.forces_over_settings", raw.path,
         found=over or f"no name of a force{', an angle, a speed or a rate' * (not roles & {*SETTINGS})}: {names}",
-        advice=f'{IDENTIFY} ' * bool(over) + 'If it is one of forces, name its columns: --map "COLUMN=Y [N]", or by --words FILE.toml.',
+        identify=f"{IDENTIFY} " * bool(over),
     )  # fmt: skip
 
 
@@ -338,7 +340,12 @@ def _offers(
             if cut
             else offer
         )
-    return tuple(out)
+    confirmed = [meaning_of(column, meanings, raw.columns) for column in raw.columns]
+    if not any(one is not None and one.role == "force" for one in confirmed):
+        return tuple(out)
+    known_too = [replace(offer, text=str(one)) if one else offer for one, offer in zip(confirmed, out, strict=True)]
+    left = without_strangers(raw, known_too, confirmed=True)
+    return tuple(offer if one else alone for one, offer, alone in zip(confirmed, out, left, strict=True))
 
 
 def _in_vain(

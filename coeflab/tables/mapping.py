@@ -269,7 +269,10 @@ def at_higher_mach(raw: RawTable, columns: Sequence[Assigned]) -> tuple[str, NDA
         by_levels = one.name.strip() == "M" and known.size == len(raw) and level.max() < len(raw) / 2
         if not (by_levels or folded(one.name) in vocabulary().lists["mach"]):
             continue
-        higher = one.values > max(INCOMPRESSIBLE, float(known[level == 0].max()))
+        lowest = min(
+            float(known[level == 0].max()), float(known.min()) * (1.0 + 2.0 * APART)
+        )  # of a sweep in small steps too
+        higher = one.values > max(INCOMPRESSIBLE, lowest)
         if np.any(higher):
             return one.name, higher
     return "", np.zeros(len(raw), dtype=bool)

@@ -139,12 +139,8 @@ def proposed(column: RawColumn, stated: Mapping[str, object] | None = None) -> P
     own = column.name.strip()
     bare, counted = counted_in(column.name, column.unit)
     bare += "'" * (bare in COMPONENTS)
-    if (
-        counted
-        and not column.means
-        and (symbol := named_as(bare))
-        and read_column_map(symbol).role in ("force", "error", "velocity")
-    ):
+    symbol = named_as(bare) if counted and not column.means else ""
+    if symbol and read_column_map(symbol).role in ("force", "error", "velocity"):
         if counted == OPEN:
             prime = symbol.partition(" ")[0].rstrip("'") + "'"
             return Proposal("", f"{SCALED}: {prime} [1e-3] or [1e3] if it is a prime; else rename the column")

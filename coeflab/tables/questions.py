@@ -111,6 +111,11 @@ def _asked(key: str, default: str = "", words: str = "", **facts: object) -> Que
     return Question(key, default=default, **worded)
 
 
+def names_in_order() -> Question:
+    """The question for the names of all columns of a table that has none."""
+    return _asked("names")
+
+
 def questions(
     raw: RawTable, columns: Sequence[Assigned], settings: Settings, shows: Sequence[Evidence] = (),
     likely: Sequence[str] = (), offers: Sequence[Proposal] = (), primes: bool = False,
@@ -357,10 +362,8 @@ def _of_sizes(columns: Sequence[Assigned], settings: Settings, likely: Sequence[
     yield replace(asked, assumed=bool(length))
     yield replace(_asked("scaling.length_name", "L"), basis=Basis.UNSTATED)
     median = {role: _median(columns, role) for role in ("speed", "density")}
-    if (
-        not median["speed"]
-        and (u := next((c for c in columns if c.meaning.name == "u" and not c.meaning.primed), None)) is not None
-    ):
+    u = next((c for c in columns if c.meaning.name == "u" and not c.meaning.primed), None)
+    if u is not None and not median["speed"]:
         half = float(np.nanmedian(np.abs(u.values))) if np.any(u.values) else 0.0
         median["speed"] = f"{half:.12g}" if half else ""  # most rows of one velocity at a time stand still along x
     for role, cancels in (("density", "1000" if pure else ""), ("speed", "1" if pure and plain else "")):

@@ -58,13 +58,8 @@ def overruled(raw: RawTable, settings: Settings) -> list[InputError]:
     for key, stated in raw.stated.items():
         one = settings.get(key)
         section, _, name = key.partition(".")
-        if (
-            one is None
-            or stated.offered
-            or stated.convention
-            or not one.origin.startswith(CONFIRMED)
-            or key in _JUDGED_BY_THEIR_OWN
-        ):
+        other = stated.offered or stated.convention or key in _JUDGED_BY_THEIR_OWN
+        if one is None or other or not one.origin.startswith(CONFIRMED):
             continue
         if section in ("source", "campaign") or (name not in SECTIONS.get(section, ()) and key not in EXTRA):
             continue
@@ -130,12 +125,8 @@ def against_words(raw: RawTable, settings: Settings) -> list[tuple[str, str, str
     out = []
     for key, words in with_formula(raw.stated, settings).items():
         one = settings.get(POINT_OF if key == POINT_FROM else key)
-        if (
-            one is None
-            or not (words.offered or words.convention)
-            or words.contradicted
-            or key.startswith(("source.", "coefficients."))
-        ):
+        idle = words.contradicted or not (words.offered or words.convention)
+        if one is None or idle or key.startswith(("source.", "coefficients.")):
             continue
         if key == POINT_FROM:
             _, point, x = point_by_words(raw, settings)

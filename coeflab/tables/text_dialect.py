@@ -14,7 +14,7 @@ from statistics import median
 
 from coeflab.core.errors import InputError, shown
 from coeflab.core.limits import CSV_LINE, TABLE_COLUMNS
-from coeflab.core.options import bounded, one_of
+from coeflab.core.options import bounded, one_of, text
 from coeflab.core.text.bounded import stream_of
 from coeflab.core.texts import input_error
 from coeflab.tables.dialect import (
@@ -26,6 +26,7 @@ from coeflab.tables.dialect import (
     Marks,
     Row,
     explained,
+    head_in_order,
     is_name_row,
     is_unit_row,
     numbered,
@@ -42,6 +43,7 @@ _ENCODINGS = (
     "utf-8", "utf-16", "utf-16-le", "utf-16-be", "cp1252", "latin-1", "cp437", "mac-roman", "shift_jis", "euc_kr", "gb18030",
 )  # fmt: skip
 SEEN, FEWEST_NAMED = 12, 3  # rows that tell a head from the first of them; names over columns of numbers
+POLAR = "Calculated polar for"  # over a polar of XFOIL and XFLR5, whose first column is alpha in degrees
 FEWEST_SHORT = 2  # rows: one alone was cut
 RULE = re.compile(r"[-=+|:_ \t]*(?:---|===|___|:-+:?|-+:)[-=+|:_ \t]*")
 _ERRORS = tuple(ERRORS)
@@ -68,6 +70,8 @@ class Options:
         Empty to find it out: a byte-order mark, else UTF-8, else cp1252.
     comment : str
         What begins a comment line; empty for each of # % // !.
+    columns : str
+        Names of all, in order and between commas, such as alpha [deg], CL, -, Cm; empty to find them.
     """
 
     delimiter: str = one_of("", "", *DELIMITERS)
@@ -77,6 +81,7 @@ class Options:
     units: int = bounded(0, -1, 1_000_000)
     encoding: str = one_of("", "", *_ENCODINGS)
     comment: str = one_of("", "", *COMMENTS, "none")
+    columns: str = text("")
 
 
 class AmbiguousError(InputError):
@@ -378,6 +383,8 @@ def _head(
 ) -> tuple[Head, list[str]]:
     """The names over the line ``start`` (counted from 1)."""
     delimiter, marks, width, filled = dialect
+    if options.columns:
+        return head_in_order(options.columns, width, path), []
     comments = _comments(options)
     above: list[Row] = []
     remarks: list[str] = []
@@ -394,25 +401,19 @@ def _head(
             cells = _over_rule(lines[n - 1], ruled, width)
             if cells is None and delimiter == " " and not remark:
                 cells = _over_cells(lines[n - 1], lines[start - 1], width)
+        if cells is None and not above and delimiter != " " and any(POLAR in text for text in lines[: n - 1]):
+            named = split_line(bare, delimiter)  # XFLR5 writes columns behind the last name
+            cells = named + [""] * (width - len(named)) if 2 * len(named) > width > len(named) else None
         asked = n in (options.header, options.units)
-        if (
-            cells is None
-            and not remark
-            and not asked
-            and numeric(found := split_line(bare, delimiter), marks) == len(found)
-        ):
+        found, lacks = split_line(bare, delimiter), cells is None and not remark
+        if lacks and not asked and numeric(found, marks) == len(found):
             remarks.append(f"line {n}: left out, {len(found)} of {width} cells")
             continue
-        if (cells is None and asked) or (
-            cells is None
-            and not remark
-            and not above
-            and options.header == 0
-            and (delimiter == " " or delimiter in bare)
-        ):
-            many = len(split_line(bare, delimiter))
+        split = delimiter == " " or delimiter in bare
+        if (cells is None and asked) or (lacks and not above and options.header == 0 and split):
+            many = len(found)
             raise input_error("tables.names_over_wider_rows", path, n, many=many, ending="s" * (many != 1), width=width)
-        if cells is None and not above and not remark and max(options.header, options.units) <= 0:
+        if lacks and not above and max(options.header, options.units) <= 0:
             break
         if cells is not None and (asked or not remark or not above or len(above) == 1):
             above.insert(0, (n, cells))
@@ -463,7 +464,7 @@ def sniff(path: Path, options: Options) -> TextDialect:
         places.insert(0, (begin + 1, begin + 1))  # 1e-3 and the like over the data, read as numbers
     for first, top in places:
         body = [c for _, c in rows[top : run[1]]]
-        filled = max(k + 1 for c in body for k, cell in enumerate(c) if cell)
+        filled = max(k + 1 for c in body for k, cell in enumerate(c) if numeric([cell], marks))
         head, remarks = _head(lines, rows[first][0], (delimiter, marks, width, filled), numbers_below, options, path)
         if head.unit_line == rows[begin][0]:
             break
@@ -472,13 +473,8 @@ def sniff(path: Path, options: Options) -> TextDialect:
     numbers = tuple(k for k in range(width) if any(numeric([c[k]], marks) for c in body))
     words = frozenset(k for c in body for k in range(width) if marks.number(c[k]) is None)
     ends_of = {len(c[-1].partition(marks.decimal)[2]) for c in body[:-1]} if len(body) > 3 else {-1}
-    used = sorted(
-        {
-            next(p for p in comments if line.lstrip().startswith(p))
-            for line in lines
-            if is_comment(line.lstrip(), comments)
-        }
-    )
+    used = sorted({p for line in lines for p in comments if is_comment(line.lstrip(), (p,))})
+    marked = encoding.endswith("-sig") and sample.startswith(codecs.BOM_UTF8)
     phrases = {
         "delimiter": next(name for name, d in DELIMITERS.items() if d == delimiter),
         "decimal mark": MARK_NAMES[marks.decimal],
@@ -486,12 +482,7 @@ def sniff(path: Path, options: Options) -> TextDialect:
         "header": f"line {head.line}" if head.line else "none",
         "units": head.units_stand,
         "comments": " ".join(used) or "none",
-        "encoding": encoding.removesuffix("-sig")
-        + (
-            " with byte-order mark"
-            if (encoding.endswith("-sig") and sample.startswith(codecs.BOM_UTF8)) or encoding == "utf-16"
-            else ""
-        ),
+        "encoding": encoding.removesuffix("-sig") + " with byte-order mark" * (marked or encoding == "utf-16"),
         "line ends": ends,
     }
     over = list(_above(lines[: rows[begin][0] - 1], head, delimiter, comments))
@@ -517,12 +508,8 @@ def _single_column(
     """Tell two columns of whole numbers from one column with decimal commas."""
     delimiter, rows, run = found
     body = [line for n, line in rows_read if rows[run[0]][0] <= n <= rows[run[1] - 1][0]]
-    if (
-        delimiter != ","
-        or run[2] != 2
-        or options.delimiter
-        or not all(re.fullmatch(r"\s*[-+]?\d+,\d+\s*", b) for b in body)
-    ):
+    two = delimiter == "," and run[2] == 2 and not options.delimiter
+    if not two or not all(re.fullmatch(r"\s*[-+]?\d+,\d+\s*", b) for b in body):
         return found
     above = [line for line in lines[: rows[run[0]][0] - 1] if line.strip()]
     named = above[-1] if above else ""

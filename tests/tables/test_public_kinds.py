@@ -17,10 +17,11 @@ from coeflab.fits.statistics.data_gate import _by_setting
 from coeflab.tables.column_company import proposals
 from coeflab.tables.column_map import read_column_map
 from coeflab.tables.column_names import named_as
+from coeflab.tables.evidence import evidence
 from coeflab.tables.form import Group
 from coeflab.tables.imported import _table
 from coeflab.tables.level_columns import slopes_by_idle_columns
-from coeflab.tables.mapping import assigned, usable_rows, without_a_setting
+from coeflab.tables.mapping import assigned, at_higher_mach, usable_rows, without_a_setting
 from coeflab.tables.parts import read_parts
 from coeflab.tables.raw_table import RawColumn, RawTable
 from coeflab.tables.reading import importer_of, read_raw
@@ -112,7 +113,7 @@ def test_two_rows_of_names_are_both_read(tmp_path: Path) -> None:
         ("Windgeschwindigkeit", "U"), ("Fd mesuré", "drag"), ("Force de traînée", "drag"), ("Coeficiente de sustentação", "lift"),
         ("ângulo de ataque", "alpha"), ("Arrastre", "drag"), ("momento de arfagem", "M"), ("Portanza", "lift"), ("攻角", "alpha"),
         ("阻力系数", "drag"), ("漂角", "beta"), ("转首力矩", "N"), ("迎え角", "alpha"), ("揚力係数", "lift"),
-        ("yaw rate coefficient", ""), ("lift to drag", ""), ("pressure coefficient", ""), ("moment of inertia", ""), ("run angle", ""),
+        ("yaw rate coefficient", ""), ("lift to drag", "ignore"), ("pressure coefficient", ""), ("moment of inertia", ""), ("run angle", ""),
     ],
 )  # fmt: skip
 def test_words_of_a_name_in_another_order_or_cut_short(name: str, meant: str) -> None:
@@ -592,3 +593,91 @@ def test_v_over_a_resistance_alone_is_the_speed(tmp_path: Path) -> None:
     assert found == {"v": "U [m/s]", "Fd mesuré": "drag [N]"}
     sway = [f"{v};{-v};{0.1 * v}".replace(".", ",") for v in (0.7, 1.6, 2.6, 3.5, 4.5)]
     assert texts(tmp_path / "s.csv", lines("v(m/s);Fy (N);Fd (N)", rows=sway))["v"] == "v [m/s]"
+
+
+def test_names_of_all_columns_in_one_option(tmp_path: Path) -> None:
+    """Tables without names asked of each column; a polar with fewer names than numbers was no table."""
+    rows = [f"{a},{cl:.4f},{cd:.4f},{cm:.4f},0.0,0.31" for a, cl, cd, cm in POLAR]
+    (bare := tmp_path / "bare.csv").write_text(lines(rows=rows))
+    inspected = CliRunner().invoke(app, ["inspect", str(bare)])
+    assert "6 open" in inspected.output
+    assert "--option 'columns=?'" in inspected.output
+    refused = CliRunner().invoke(app, ["import", str(bare), "--out", str(tmp_path / "no")])
+    assert "columns=alpha [deg], CL, CD, -" in str(refused.exception)
+    set_ = ["coefficients.area=1", "axes.frame=FRD", "axes.reference_point=-0.25 from nose", "scaling.length=1"]
+    command = ["import", str(bare), "--option", "columns=alpha [deg], CL, CD, Cm, -", "--out", str(tmp_path / "out")]
+    done = CliRunner().invoke(app, [*command, *(w for s in set_ for w in ("--set", s)), "--accept"])
+    assert done.exit_code == 0, done.output
+    assert cf.fit(tmp_path / "out")["Zw'"].value == pytest.approx(-(0.1 * 180.0 / np.pi + 0.02), rel=2e-3)
+    with pytest.raises(InputError, match="7 names over rows of 6 cells"):
+        read_raw(bare, "table", {"columns": "a, b, c, d, e, f, g"})
+    above = (" Calculated polar for: own section", "", "alpha,CL,CD,CDp,Cm")
+    polar = [f"{a},{cl:.4f},{cd:.4f},0.01,{cm:.4f},0.0,0.31" for a, cl, cd, cm in POLAR]
+    found = texts(tmp_path / "polar.csv", lines(*above, rows=polar))
+    assert (found["alpha"], found["Cm"], found["column 7"]) == ("alpha [deg]", "M [coefficient A=? L=?]", "ignore")
+
+
+def test_a_remark_beside_some_rows_needs_no_name(tmp_path: Path) -> None:
+    rows = [f"{a}\t{cl:.4f}\t{cd:.4f}\t" + "wake off the rake" * (a == 4.0) for a, cl, cd, _ in POLAR]
+    found = texts(tmp_path / "t.txt", lines("Alpha\tCL\tCD", "degrees\t/\t/", rows=rows))
+    assert found["Alpha"] == "alpha [deg]"
+    assert found["column 4"] == "label"
+
+
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+def test_the_sign_of_an_angle_shows_near_the_origin(tmp_path: Path, sign: float) -> None:
+    """Over half a turn lift falls, and its trend says nothing or the contrary."""
+    angles = np.arange(-180.0, 181.0, 5.0)
+    lift = np.where(np.abs(angles) <= 15.0, 0.1 * angles, -0.012 * angles) * sign
+    rows = [f"{a},{cl:.4f},{0.02 + np.sin(np.radians(a)) ** 2:.4f}" for a, cl in zip(angles, lift)]
+    (path := tmp_path / "t.csv").write_text(lines("alpha,CL,CD", rows=rows))
+    raw = read_raw(path, "table")
+    columns = assigned(raw, {c.name: read_column_map(m) for c, m in zip(
+        raw.columns, ("alpha [deg]", "lift' [-]", "drag' [-]"), strict=True)})  # fmt: skip
+    shown = [e.value for e in evidence(columns) if e.key == "axes.alpha"]
+    assert shown == [f"w = {'+' if sign > 0 else '-'}U sin(alpha)"]
+
+
+def test_lift_at_one_incidence_leaves_a_drift_sweep(tmp_path: Path) -> None:
+    rows = [f"{b},0.6,{0.1 + 0.001 * b * b:.4f},{-0.02 * b:.4f}" for b in ANGLES]
+    found = texts(tmp_path / "t.csv", lines("beta,CL,CD,CS", rows=rows))
+    assert (found["CL"], found["CD"]) == ("ignore", "drag [coefficient A=?]")
+
+
+def test_mach_numbers_in_small_steps_are_not_one_level() -> None:
+    """A sweep from 0.01 to 25 in steps of 0.01 was one level, and all of it entered the slope."""
+    mach = np.arange(0.01, 25.0, 0.01)
+    columns = (RawColumn("Mach", "", mach), RawColumn("alpha", "deg", np.tile(2.0, len(mach))))
+    raw = RawTable(Path("t.csv"), columns, 1, np.arange(2, len(mach) + 2))
+    name, higher = at_higher_mach(raw, [])
+    assert name == "Mach"
+    assert mach[~higher].max() == pytest.approx(0.3)
+
+
+def test_the_one_angle_beside_lift_is_that_of_attack(tmp_path: Path) -> None:
+    rows = [f"{a},{5.0 * cl:.4f},{5.0 * cd:.4f},{cl / cd:.3f}" for a, cl, cd, _ in POLAR]
+    found = texts(tmp_path / "t.csv", lines("angle_deg,lift_N,drag_N,lift_to_drag", rows=rows))
+    assert found == {"angle": "alpha [deg]", "lift": "lift [N]", "drag": "drag [N]", "lift_to_drag": "ignore"}
+    beside = texts(
+        tmp_path / "s.csv",
+        lines("angle_deg,beta_deg,lift_N,drag_N", rows=[r.replace(",", ",3,", 1).rpartition(",")[0] for r in rows]),
+    )
+    assert beside["angle"] == ""
+
+
+def test_forces_that_a_person_names_leave_those_of_other_sources(tmp_path: Path) -> None:
+    """The refusal promised it, and asked of seventeen columns all the same."""
+    rows = [f"{a},{cl:.4f},{cl + 0.01:.4f},{cd:.4f},{cd + 0.001:.4f},{0.01 + a / 1e4:.5f}" for a, cl, cd, _ in POLAR]
+    (path := tmp_path / "t.csv").write_text(lines("AoA_deg,CL_fine,CL_panel,CD_fine,CD_panel,Delta_CL", rows=rows))
+    command = ["import", str(path), "--out", str(tmp_path / "out"), "--accept"]
+    for given in ("CL_fine=lift [coefficient A=1 m^2]", "CD_fine=drag [coefficient A=1 m^2]"):
+        command += ["--map", given]
+    done = CliRunner().invoke(app, [*command, "--set", "axes.frame=FRD", "--set", "scaling.length=1"])
+    assert done.exit_code == 0, done.output
+    assert cf.fit(tmp_path / "out")["Zw'"].value == pytest.approx(-(0.1 * 180.0 / np.pi + 0.02), rel=2e-3)
+
+
+def test_a_column_of_forces_without_a_number_is_named(tmp_path: Path) -> None:
+    (path := tmp_path / "t.csv").write_text(lines("alpha [deg],CL,CD", rows=[f"{a},nan,nan" for a in ANGLES]))
+    refused = CliRunner().invoke(app, ["import", str(path), "--out", str(tmp_path / "out")])
+    assert "no number in the whole column" in str(refused.exception)

@@ -22,6 +22,7 @@ from coeflab.core.text.bounded import stream_of, whole_bytes
 from coeflab.core.texts import input_error
 from coeflab.core.types import Array
 from coeflab.core.wording import listed
+from coeflab.tables import dialect
 from coeflab.tables.blocks import Title, with_blocks
 from coeflab.tables.dialect import Cells, Head, Marks, Row, is_unit_row, numbered, numeric, raw_columns, read_head
 from coeflab.tables.raw_table import RawTable, SeveralError
@@ -53,11 +54,14 @@ class Options:
         Row of the column names; 0 to find it, -1 where there is none.
     units : int
         Row of the units; 0 to find it, -1 where there is none.
+    columns : str
+        Names of all, in order and between commas; empty to find them.
     """
 
     sheet: str = text("")
     header: int = bounded(0, -1, 1_048_576)
     units: int = bounded(0, -1, 1_048_576)
+    columns: str = text("")
 
 
 def _kind(path: Path) -> str:
@@ -223,6 +227,8 @@ def _body(rows: list[list[Value]], options: Options, path: Path) -> tuple[int, H
 
 
 def _head_over(rows: list[list[Value]], begin: int, numbers: Set[int], options: Options, path: Path) -> Head:
+    if options.columns:
+        return dialect.head_in_order(options.columns, len(rows[0]), path)
     above: list[Row] = []
     for i in range(begin - 1, max(begin - 12, -1), -1):
         cells = [_text(v) for v in rows[i]]

@@ -435,9 +435,7 @@ def _add_angles(config: _Config, monitor: Monitor, conditions: dict[str, Stated]
         conditions["mach"] = Stated(values[0], config.at("MACH_NUMBER"))
     if config.text("FIXED_CL_MODE").upper() == "YES":
         conditions.pop("alpha", None)
-        if (
-            "AoA" in monitor.names
-            and len(monitor)
-            and np.isfinite(last := monitor.columns[monitor.names.index("AoA")][-1])
-        ):
+        found = "AoA" in monitor.names and len(monitor)
+        last = monitor.columns[monitor.names.index("AoA")][-1] if found else math.nan
+        if math.isfinite(last):
             conditions["alpha"] = Stated(math.radians(float(last)), monitor.at(-1))

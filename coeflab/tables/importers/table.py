@@ -31,10 +31,10 @@ summary = "any delimited text: delimiter, decimal mark, units and encoding detec
 citations = ()
 reads = "tables of delimited text"
 
-POLAR = "Calculated polar for"  # over a polar of XFOIL and XFLR5, whose alpha is in degrees
 _BLOCK = 1 << 20  # letters
 _COMMENT_BEGINS = frozenset(c[0] for c in text_dialect.COMMENTS)
 _PLAIN = re.compile(r"[-+]?[0-9][-+.,0-9eE]*")
+_RULED = frozenset("-=+|:_")
 _NESTED = frozenset("{[")  # what a table does not begin with
 _PIECE = 32  # lines: where a block has a cell without number, most of its pieces have none
 
@@ -142,11 +142,8 @@ class _Body:
             if len(cells) == d.width and _PLAIN.fullmatch(cells[d.numbers[0]]):
                 return cells
         stripped = text.strip()
-        if (
-            not stripped
-            or text_dialect.is_comment(stripped, d.comments)
-            or (stripped[0] in "-=+|:_" and text_dialect.RULE.fullmatch(stripped))
-        ):
+        ruled = stripped[:1] in _RULED and text_dialect.RULE.fullmatch(stripped)
+        if not stripped or ruled or text_dialect.is_comment(stripped, d.comments):
             return None
         cells = text_dialect.split_line(text, d.delimiter)
         while len(cells) > d.width and not cells[-1]:
@@ -279,7 +276,7 @@ def raw(path: Path, options: Mapping[str, Any]) -> RawTable:
         raise text_dialect.unread(path, why) from None
     texts = {k: t for k, t in body.texts.items() if k in textual}
     columns, remarks = raw_columns(dialect.head, body.whole_columns(), texts, body.met)
-    if any(POLAR in text for text in dialect.above):
+    if any(text_dialect.POLAR in text for text in dialect.above):
         columns = tuple(replace(c, unit="deg") if not c.unit and named_as(c.name) == "alpha" else c for c in columns)
     lines = np.concatenate(body.lines)
     titles = [Title(0, 0, text) for text in dialect.above]
