@@ -99,6 +99,10 @@ class BenchTest:
         """What the two numbers of a law multiply."""
         return SIDES if _both_sides(self.command) else LAWS
 
+    def at(self, law: LoadLaw, command: Array) -> Array:
+        """Load of a law at commands (n,)."""
+        return np.asarray(_design(command, command**2, _both_sides(self.command)) @ law.value)
+
     def as_json(self) -> dict[str, Any]:
         """Factors, stretches and statements as one JSON object."""
         return {
@@ -175,9 +179,7 @@ def bench_test(files: Sequence[Path], parameters: ParameterFile, name: str, wind
         0.0  # at rest; a tachometer's noise turns no rotor astern
     )
     command, squares = table[:, 0], table[:, 1]
-    design = np.column_stack([command, squares])
-    if _both_sides(command):
-        design = np.column_stack([np.where(sign * command > 0.0, squares, 0.0) for sign in (1.0, -1.0)])
+    design = _design(command, squares, _both_sides(command))
     laws = []
     for k, load in enumerate(LOADS, 2):
         if np.isfinite(table[:, k]).all():
@@ -273,6 +275,13 @@ def _side(load: str, found: BenchTest, sign: float) -> tuple[CurveSegment, str]:
 def _both_sides(command: Array) -> bool:
     """Whether a test goes through zero, where a n + b n^2 would be even in part."""
     return bool(np.min(command) < 0.0 < np.max(command))
+
+
+def _design(command: Array, squares: Array, sides: bool) -> Array:
+    """(n, 2) columns that the factors of a law multiply."""
+    if not sides:
+        return np.column_stack([command, squares])
+    return np.column_stack([np.where(sign * command > 0.0, squares, 0.0) for sign in (1.0, -1.0)])
 
 
 def _law(load: str, thruster: ParameterThruster, design: Array, values: Array, sides: bool) -> LoadLaw:

@@ -111,6 +111,7 @@ def test_each_side_of_zero_has_its_own_thrust(tmp_path: Path) -> None:
     assert found.laws[0].value * 720.0**2 == pytest.approx(
         [60.0, -30.0]
     )  # before: a n + b n^2 of both, 75 % off astern
+    assert found.at(found.laws[0], np.array([-360.0, 0.0, 360.0])) == pytest.approx([-7.5, 0.0, 15.0])
     assert [main.curve.at(n) for n in (-720.0, -360.0, 0.0, 360.0, 720.0)] == pytest.approx([-30, -7.5, 0, 15, 60])
     assert main.torque_curve is not None
     assert [main.torque_curve.at(n) for n in (-720.0, -360.0, 720.0)] == pytest.approx([-2.0, -0.5, 2.0])
