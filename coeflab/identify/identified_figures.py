@@ -74,12 +74,12 @@ def bench_figure(found: BenchTest, source: str = "") -> Figure:
     source : str
         What a reader has to know of the series, in words.
     """
-    n = np.linspace(0.0, float(np.max(found.command)), CURVE)
+    n = np.linspace(min(0.0, float(np.min(found.command))), max(0.0, float(np.max(found.command))), CURVE)
     plots = []
     for law in found.laws:
         traces = [
             Trace("steady stretches", found.command, found.loads[law.load], 0, "hollow"),
-            Trace("identified", n, law.value[0] * n + law.value[1] * n**2, 0),
+            Trace("identified", n, found.at(law, n), 0),
         ]
         if law.file_value is not None:
             traces.append(Trace("parameter file", n, law.file_value[0] * n + law.file_value[1] * n**2, -1))

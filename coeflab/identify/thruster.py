@@ -25,7 +25,7 @@ from coeflab.vehicle.parameter_parts import CurveSegment, ParameterCurve, Parame
 LOADS = {"thrust": ("T", "thrust", "force", "N"), "torque": ("Q", "torque", "moment", "N*m")}
 WINDOW, STEADY = 0.5, 0.01  # s, and of the largest command: what the command may change by within it
 FEWEST_ROWS, FEWEST_STRETCHES = 5, 4
-LAWS = ("n", "n^2")
+LAWS, SIDES = ("n", "n^2"), ("n^2 ahead", "n^2 astern")
 
 
 @brief
@@ -40,7 +40,8 @@ class LoadLaw:
     unit : str
         N or N m.
     value, u95 : (2,) array
-        Factors of n and n^2 and their 95 % half-widths, from the scatter of the stretches about the law.
+        Factors of n and n^2, or of n^2 ahead and astern where the test goes through zero, and their 95 % half-widths, from the
+        scatter of the stretches about the law.
     file_value : (2,) array or None
         Of the parameter file, where its curve is one polynomial of this form.
     rest, rest_u95 : float
@@ -93,6 +94,15 @@ class BenchTest:
     laws: tuple[LoadLaw, ...]
     statements: tuple[str, ...]
 
+    @property
+    def factors(self) -> tuple[str, str]:
+        """What the two numbers of a law multiply."""
+        return SIDES if _both_sides(self.command) else LAWS
+
+    def at(self, law: LoadLaw, command: Array) -> Array:
+        """Load of a law at commands (n,)."""
+        return np.asarray(_design(command, command**2, _both_sides(self.command)) @ law.value)
+
     def as_json(self) -> dict[str, Any]:
         """Factors, stretches and statements as one JSON object."""
         return {
@@ -101,7 +111,7 @@ class BenchTest:
             "unit": self.unit,
             "curves": [
                 {
-                    "load": law.load, "unit": law.unit, "factors": list(LAWS), "value": law.value.tolist(),
+                    "load": law.load, "unit": law.unit, "factors": list(self.factors), "value": law.value.tolist(),
                     "u95": law.u95.tolist(), "file_value": None if law.file_value is None else law.file_value.tolist(),
                     "rest": law.rest, "rest_u95": law.rest_u95, "scatter": law.scatter,
                 }
@@ -118,10 +128,10 @@ class BenchTest:
         """Factors beside those of the parameter file."""
         rows = []
         for law in self.laws:
-            for k, name in enumerate(LAWS):
+            for k, name in enumerate(self.factors):
                 stated = None if law.file_value is None else float(law.file_value[k])
                 agrees = "" if stated is None else "yes" if abs(law.value[k] - stated) <= law.u95[k] else "no"
-                unit = f"{law.unit}/{self.unit}{'^2' if k else ''}"
+                unit = f"{law.unit}/{self.unit}{'^2' if '^2' in name else ''}"
                 cells = (number(float(law.value[k]), 5), number(float(law.u95[k]), 2))
                 rows.append(
                     (f"{law.load}, {name}", *cells, unit, ABSENT if stated is None else number(stated, 5), agrees)
@@ -169,10 +179,11 @@ def bench_test(files: Sequence[Path], parameters: ParameterFile, name: str, wind
         0.0  # at rest; a tachometer's noise turns no rotor astern
     )
     command, squares = table[:, 0], table[:, 1]
+    design = _design(command, squares, _both_sides(command))
     laws = []
     for k, load in enumerate(LOADS, 2):
         if np.isfinite(table[:, k]).all():
-            laws.append(_law(load, thruster, np.column_stack([command, squares]), table[:, k]))
+            laws.append(_law(load, thruster, design, table[:, k], _both_sides(command)))
     words = [
         f"{len(command)} steady stretches of {min(counts)} to {max(counts)} rows, {command.min():.5g} to {command.max():.5g} "
         f"{thruster.curve.unit}; each counts once",
@@ -261,7 +272,19 @@ def _side(load: str, found: BenchTest, sign: float) -> tuple[CurveSegment, str]:
     return CurveSegment(low=low, high=high, coefficients=(0.0, 0.0, slope)), text
 
 
-def _law(load: str, thruster: ParameterThruster, design: Array, values: Array) -> LoadLaw:
+def _both_sides(command: Array) -> bool:
+    """Whether a test goes through zero, where a n + b n^2 would be even in part."""
+    return bool(np.min(command) < 0.0 < np.max(command))
+
+
+def _design(command: Array, squares: Array, sides: bool) -> Array:
+    """(n, 2) columns that the factors of a law multiply."""
+    if not sides:
+        return np.column_stack([command, squares])
+    return np.column_stack([np.where(sign * command > 0.0, squares, 0.0) for sign in (1.0, -1.0)])
+
+
+def _law(load: str, thruster: ParameterThruster, design: Array, values: Array, sides: bool) -> LoadLaw:
     from scipy.special import stdtrit
 
     scale = np.max(np.abs(design), axis=0)
@@ -282,7 +305,7 @@ def _law(load: str, thruster: ParameterThruster, design: Array, values: Array) -
     rest, rest_u95, _ = fitted(np.column_stack([design / scale, np.ones(len(values))]))
     curve = thruster.curve if load == "thrust" else thruster.torque_curve
     stated = None
-    if curve is not None and len(curve.segments) == 1:
+    if curve is not None and len(curve.segments) == 1 and not sides:
         factors = np.zeros(12)
         factors[: len(curve.segments[0].coefficients)] = curve.segments[0].coefficients
         stated = None if np.any(factors[[0, *range(3, 12)]]) else factors[1:3]

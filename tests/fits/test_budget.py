@@ -108,6 +108,20 @@ def test_one_per_cent_of_length_is_two_of_a_force_slope_and_three_of_a_moment_sl
     assert found["Nv"].part("length") == pytest.approx(0.03 * abs(found["Nv"].value), rel=1e-6)
 
 
+@pytest.mark.parametrize("name", ["force", "moment"])
+def test_a_calibration_is_of_what_the_balance_read_wherever_the_coefficients_are_about(name: str) -> None:
+    """Before: of the moved moment; about a point where it vanishes 2 % of the moment that was read were 2 % of nothing."""
+    shift, about = 0.3, np.array([0.3, 0.0, 0.0])
+    scaled = {c: 1.0 + ONE * (name == ("moment" if c == "N" else "force")) for c in "YN"}
+    tables = [replace(t, source=EXPERIMENT) for t in (small_table(FULL), arm_table())]
+    off = [replace(t, forces={c: f * scaled.get(c, 1.0) for c, f in t.forces.items()}) for t in tables]
+    right, wrong = (fit([t.about(about) for t in some], LENGTH, {}).coefficients for some in (tables, off))
+    found = found_by(InputUncertainty(**{name: ONE}), shift)
+    for symbol in ("Yv", "Nv", "Yr", "Nr"):
+        moved = (wrong[symbol].value or 0.0) - (right[symbol].value or 0.0)
+        assert (found[symbol].part(name) or 0.0) == pytest.approx(abs(moved), rel=0.02, abs=1e-9)
+
+
 def test_the_reference_point_moves_coefficients_as_the_transfer_says() -> None:
     found = found_by(InputUncertainty(reference_point=ONE))
     value = {s: b.value / LENGTH.length for s, b in found.items()}

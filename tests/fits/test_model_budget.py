@@ -68,6 +68,14 @@ def test_a_relative_input_moves_a_coefficient_by_its_power(name: str, powers: di
     assert {s for s, b in found.items() if b.inputs} >= set(powers)
 
 
+def test_a_calibration_of_the_moment_is_of_what_the_balance_read() -> None:
+    """Before: of the moved one, 1 % of Nv' - x' Yv'."""
+    ahead = 0.3
+    _, found = budgeted(exact_table(moment=0.01).about(np.array([ahead, 0.0, 0.0])))
+    assert found["Nv"].value == pytest.approx(NV - ahead / LENGTH.length * YV, rel=1e-6)
+    assert found["Nv"].part("moment") == pytest.approx(0.01 * abs(NV), rel=1e-6)
+
+
 def test_an_offset_of_the_angle_moves_the_intercept_by_the_slope() -> None:
     result, _ = budgeted(exact_table(angle=0.1 * DEGREE), variable="beta", degree=3)
     side = next(m for m in result.models if m.response == "Y'")

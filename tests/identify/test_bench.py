@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from coeflab.core.errors import InputError
-from coeflab.identify.thruster import bench_test, with_curves
+from coeflab.identify.thruster import BenchTest, bench_test, with_curves
 from coeflab.vehicle.own_numbers import typed_file
 from coeflab.vehicle.parameter_file import ParameterFile, read_parameter_file
 
@@ -85,7 +85,7 @@ def test_a_speed_that_never_stands_is_refused(tmp_path: Path, air: ParameterFile
         bench_test([path], air, "rotor1")
 
 
-def both_ways(folder: Path, torque_astern: float = -1.0) -> ParameterFile:
+def both_ways(folder: Path, torque_astern: float = -1.0) -> tuple[ParameterFile, BenchTest]:
     """60 N and 2 N m at 720 rpm, 30 N and 2 N m at -720, with the square of the command on each side."""
     base = typed_file(
         "auv", ["Xuu=-10 N/(m/s)^2"], length="2 m", length_name="LOA", speed="2 m/s", density="1000", about="cg",
@@ -100,12 +100,18 @@ def both_ways(folder: Path, torque_astern: float = -1.0) -> ParameterFile:
     rows = [f"{0.05 * k:.3f},{n},{a},{b}" for k, (n, a, b) in enumerate(zip(commands, thrust, torque, strict=True))]
     path = folder / "bench.csv"
     path.write_text("\n".join(["t [s],speed [rpm],T [N],Q [N*m]", *rows]) + "\n")
-    return with_curves(base, bench_test([path], base, "main"))
+    found = bench_test([path], base, "main")
+    return with_curves(base, found), found
 
 
 def test_each_side_of_zero_has_its_own_thrust(tmp_path: Path) -> None:
-    made = both_ways(tmp_path)
+    made, found = both_ways(tmp_path)
     main = made.thrusters[0]
+    assert found.factors == ("n^2 ahead", "n^2 astern")
+    assert found.laws[0].value * 720.0**2 == pytest.approx(
+        [60.0, -30.0]
+    )  # before: a n + b n^2 of both, 75 % off astern
+    assert found.at(found.laws[0], np.array([-360.0, 0.0, 360.0])) == pytest.approx([-7.5, 0.0, 15.0])
     assert [main.curve.at(n) for n in (-720.0, -360.0, 0.0, 360.0, 720.0)] == pytest.approx([-30, -7.5, 0, 15, 60])
     assert main.torque_curve is not None
     assert [main.torque_curve.at(n) for n in (-720.0, -360.0, 720.0)] == pytest.approx([-2.0, -0.5, 2.0])

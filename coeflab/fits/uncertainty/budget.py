@@ -198,7 +198,9 @@ def budgets_of(
     declared = tables[sweeps[0].table].uncertainty
     moved = None
     if declared is not None and declared.declared:
-        moved = moved_by(fit, tuple(sweeps), declared, draws, seed)
+        one = tables[sweeps[0].table]
+        measured = one.reference_point if one.measured_about is None else one.measured_about
+        moved = moved_by(fit, tuple(sweeps), declared, measured, draws, seed)
     found = []
     for i, sweep in enumerate(sweeps):
         c = fit.coefficients[sweep.symbol]

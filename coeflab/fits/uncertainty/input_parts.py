@@ -15,7 +15,8 @@ from numpy.typing import NDArray
 
 from coeflab.fits.uncertainty.propagation import STEP, Propagated, normal_draws, summary_of
 from coeflab.law.coefficient import transfer_matrix
-from coeflab.law.symbols import ANGULAR, MOMENTS
+from coeflab.law.symbols import ANGULAR, COMPONENTS, MOMENTS
+from coeflab.law.transforms import force_transfer
 from coeflab.tables.input_uncertainty import NAMES, InputUncertainty
 
 if TYPE_CHECKING:
@@ -104,12 +105,12 @@ def perturbed(sweep: Sweep, names: Sequence[str]) -> Callable[[Array], Array]:
 
 
 def moved_by(
-    fit: FitResult, sweeps: tuple[Sweep, ...], declared: InputUncertainty, draws: int, seed: int
+    fit: FitResult, sweeps: tuple[Sweep, ...], declared: InputUncertainty, measured: Array, draws: int, seed: int
 ) -> list[tuple[tuple[InputPart, ...], Propagated]]:
-    """Inputs of every sweep's coefficient, and all inputs together by both ways."""
+    """Inputs of every sweep's coefficient, and all inputs together by both ways; `measured` is the point (3,) that the balance read about."""
     names = declared.declared
     half = np.array([getattr(declared, n) for n in names], dtype=float)
-    function, transferable = _of_inputs(fit, sweeps, names)
+    function, transferable = _of_inputs(fit, sweeps, names, measured)
     step = STEP * half
     around = function(np.vstack([np.diag(step), -np.diag(step)]))
     gradients = (around[: len(names)] - around[len(names) :]) / (2.0 * step[:, None])
@@ -132,7 +133,7 @@ def moved_by(
 
 
 def _of_inputs(
-    fit: FitResult, sweeps: tuple[Sweep, ...], names: tuple[str, ...]
+    fit: FitResult, sweeps: tuple[Sweep, ...], names: tuple[str, ...], measured: Array
 ) -> tuple[Callable[[Array], Array], NDArray[np.bool_]]:
     """All coefficients of a fit as functions of the inputs, (s, k) -> (s, m), and which of them a transfer determines.
 
@@ -156,12 +157,31 @@ def _of_inputs(
                 slopes[k] + 2 * shift * curves[k]
             )
     each = [perturbed(s, names) for s in sweeps]
+    lever = _levers(sweeps, fit.coefficients.reference_point - np.array([shift, 0.0, 0.0]) - measured, length)
 
     def values(deviations: Array) -> Array:
         about = np.column_stack([f(deviations) for f in each])
+        error = {n: deviations[:, [names.index(n)]] for n in names if n in ("force", "moment")}
+        about = about + (error.get("force", 0.0) - error.get("moment", 0.0)) * (about @ lever.T)
         dx = np.full((len(deviations), 1), shift)
         if "reference_point" in names:
             dx = dx + deviations[:, [names.index("reference_point")]]
         return np.asarray(about + dx * (about @ first.T) + dx**2 * (about @ second.T))
 
     return values, known
+
+
+def _levers(sweeps: Sequence[Sweep], shift: Array, length: float) -> Array:
+    """(m, m) moments that the coefficients of forces make by a shift (3,) from the point that the balance read about.
+
+    A calibration is of what is read: of N there and of Y, so that N + T Y here becomes (1 + m) N + (1 + f) T Y.
+    """
+    transfer = force_transfer(shift) - np.eye(len(COMPONENTS))
+    return np.array([
+        [
+            transfer[COMPONENTS.index(a.component), COMPONENTS.index(b.component)] / length
+            if (a.variable, a.target) == (b.variable, b.target) and {a.component, b.component} <= {*COMPONENTS} else 0.0
+            for b in sweeps
+        ]
+        for a in sweeps
+    ])  # fmt: skip

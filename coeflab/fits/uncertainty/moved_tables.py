@@ -14,7 +14,7 @@ import numpy as np
 from coeflab.core.types import Array, dataclass
 from coeflab.law.scaling import Scaling
 from coeflab.law.symbols import ANGULAR, FORCES, LINEAR, MOMENTS
-from coeflab.law.transforms import incidence
+from coeflab.law.transforms import force_transfer, incidence
 from coeflab.tables.force_table import ForceTable
 from coeflab.tables.input_uncertainty import NAMES, InputUncertainty
 
@@ -112,12 +112,20 @@ def _moved(table: ForceTable, errors: Mapping[tuple[str, str], float]) -> ForceT
     for names, kind in ((LINEAR, "speed"), (ANGULAR, "rate")):
         motion |= {m: motion[m] * factor(kind) for m in names}
     scale = dict.fromkeys(FORCES, factor("force")) | dict.fromkeys(MOMENTS, factor("moment"))
+    forces = {c: f * scale[c] for c, f in table.forces.items()}
+    if table.measured_about is not None:  # a calibration is of what the balance reads
+        lever = force_transfer(table.reference_point - table.measured_about)[3:, :3] * (
+            factor("force") - factor("moment")
+        )
+        for c, row in zip(MOMENTS, lever, strict=True):
+            if c in forces:
+                forces[c] = forces[c] + sum(table.forces[f] * k for f, k in zip(FORCES, row, strict=True) if k)
     return replace(
         table,
         motion=motion,
         controls={c: a + errors.get(("angle", c), 0.0) for c, a in table.controls.items()},
         speed=table.speed * factor("speed"),
-        forces={c: f * scale[c] for c, f in table.forces.items()},
+        forces=forces,
         errors={c: e * scale[c] for c, e in table.errors.items()},
         conditions=replace(table.conditions, density=table.conditions.density * factor("density")),
         density=None if table.density is None else table.density * factor("density"),
