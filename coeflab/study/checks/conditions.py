@@ -28,11 +28,11 @@ def check(study: Study) -> Sequence[Check]:
     found = [c for t in {t.campaign: t for t in study.tables}.values() for c in _found(t)]
     rows = [(t.name, t.density) for t in study.tables if t.density is not None]
     found += [c for name, by_row in rows for c in _water(name, float(by_row.min()), float(by_row.max()))]
-    return found + [c for name in study.parameter_files for c in _waters(study, name)]
+    return found + [c for name in study.parameter_files if study.plan.conditions is None for c in _waters(study, name)]
 
 
 def _waters(study: Study, name: str) -> Iterator[Check]:
-    """Campaigns of another water than the one of the file's SI values."""
+    """Campaigns of another water than the one of the file's SI values, which is that of the first."""
     file = study.parameter_files[name]
     of, density = {c.campaign for c in file.coefficients}, file.conditions.density
     others = {t.campaign: t.conditions.density for t in study.tables if t.campaign in of}
