@@ -109,6 +109,7 @@ def test_each_parameter_file_has_the_water_and_the_speed_of_its_own_campaigns(tm
     for file in study.parameter_files.values():
         yv = file.coefficient("Yv")
         assert yv is not None
+        assert yv.value is not None
         unit = 0.5 * file.conditions.density * file.conditions.speed * file.scaling.length**2
         assert yv.value_si == pytest.approx(yv.value * unit)
     assert [
