@@ -152,14 +152,17 @@ def run(plan: Plan | str | Path, progress: Progress = lambda _: None) -> Study:
     groups = plan.parameter_files or _groups(fits, plan)
     missing = tuple(c for g in groups for c in _missing(g, fits, tables, plan.wanted))
     first = plan.scaling or fits[0].coefficients.scaling
-    conditions = plan.conditions or tables[0].conditions
-    hulls = _hulls(groups, conditions.density, progress)
+    own = {t.campaign: t.conditions for t in reversed(tables)}
+    at = {
+        g.name: plan.conditions or next((own[c] for c in g.campaigns if c in own), tables[0].conditions) for g in groups
+    }
+    hulls = _hulls(groups, next(iter(at.values())).density, progress)
     inputs = _inputs(plan, tables, [b for b in (body, *(h.body for h in hulls.values())) if b is not None])
     files = {}
     for g in groups:
         with located_refusals(f"parameter_file.{g.name}"[:80]):
             files[g.name] = assemble(
-                g, plan.name, fits, tables, missing, references, body, conditions, inputs, hulls.get(g.name)
+                g, plan.name, fits, tables, missing, references, body, at[g.name], inputs, hulls.get(g.name)
             )
             if g.base is not None:
                 from coeflab.vehicle.merge import merged

@@ -520,7 +520,11 @@ def test_kinematic_forces_of_a_solver_keep_their_density_with_its_unit(stub: Pat
 
 def in_check(table: ForceTable) -> list[str]:
     """What the check of conditions warns of."""
-    return [c.subject for c in conditions.check(SimpleNamespace(tables=[table])) if c.severity is Severity.WARN]  # type: ignore[arg-type]
+    return [
+        c.subject
+        for c in conditions.check(SimpleNamespace(tables=[table], parameter_files={}))
+        if c.severity is Severity.WARN
+    ]  # type: ignore[arg-type]
 
 
 @pytest.mark.parametrize(("typed", "said"), [("3000", 'Then write "3000 mm"'), ("0.004", 'Then write "0.004 km"')])

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import re
 from importlib.resources import files
 from pathlib import Path
 
@@ -84,3 +85,33 @@ def test_imperial_cfd_axes_give_the_same_derivatives(tmp_path: Path, at: float) 
 def test_a_study_renders_the_same_bytes_twice(tmp_path: Path) -> None:
     plan = read_plan(write_template(tmp_path))
     assert rendered(run(plan)) == rendered(run(plan))
+
+
+def test_each_parameter_file_has_the_water_and_the_speed_of_its_own_campaigns(tmp_path: Path) -> None:
+    """Two bodies of one plan: the second had its SI values in the water of the first."""
+    for name, density, speed in (("sea", 1025.0, 2.0), ("lake", 998.2, 3.0), ("more", 1020.0, 2.0)):
+        write_template(tmp_path / name)
+        place = tmp_path / name / "campaign" / "campaign.toml"
+        text = re.sub(r"(?m)^density = [\d.]+", f"density = {density}", place.read_text())
+        text = re.sub(r"(?m)^speed = [\d.]+", f"speed = {speed}", text)
+        if name == "sea":  # drift alone: its rates are those of the third, of another water
+            text = "[[table]]".join(text.split("[[table]]")[:2])
+        body = "lake" if name == "lake" else "sea"
+        text = re.sub(r'(?m)^body = "\w+"', f'body = "{body}"', text)
+        place.write_text(re.sub(r'(?m)^name = "\w+"', f'name = "{name}"', text))
+    plan = tmp_path / "plan.toml"
+    plan.write_text(
+        '[study]\nname = "both"\n' + "".join(f'[[table]]\ncampaign = "{n}/campaign"\n' for n in ("sea", "lake", "more"))
+    )
+    study = run(read_plan(plan))
+    at = {n: (p.conditions.density, p.conditions.speed) for n, p in study.parameter_files.items()}
+    assert at == {"sea": (1025.0, 2.0), "lake": (998.2, 3.0)}
+    for file in study.parameter_files.values():
+        yv = file.coefficient("Yv")
+        assert yv is not None
+        assert yv.value is not None
+        unit = 0.5 * file.conditions.density * file.conditions.speed * file.scaling.length**2
+        assert yv.value_si == pytest.approx(yv.value * unit)
+    assert [
+        c.subject for c in study.checks if "SI values at 1025 kg/m^3, of campaigns at more 1020" in str(c.statistic)
+    ] == ["sea density"]

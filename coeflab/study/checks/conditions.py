@@ -19,6 +19,7 @@ citations = ("ittc_water",)
 
 WATER = (985.0, 1040.0)  # kg/m^3: fresh at 55 deg C to the Red Sea
 AIR = (0.5, 1.6)  # kg/m^3: hot and high, cold and dense
+ANOTHER = 2e-3  # more than 10 K make in fresh water
 REYNOLDS = 0.05  # what LOA in the place of LBP makes
 
 
@@ -26,7 +27,17 @@ def check(study: Study) -> Sequence[Check]:
     """Findings on every campaign that was run in water or states viscosity and Reynolds number."""
     found = [c for t in {t.campaign: t for t in study.tables}.values() for c in _found(t)]
     rows = [(t.name, t.density) for t in study.tables if t.density is not None]
-    return found + [c for name, by_row in rows for c in _water(name, float(by_row.min()), float(by_row.max()))]
+    found += [c for name, by_row in rows for c in _water(name, float(by_row.min()), float(by_row.max()))]
+    return found + [c for name in study.parameter_files if study.plan.conditions is None for c in _waters(study, name)]
+
+
+def _waters(study: Study, name: str) -> Iterator[Check]:
+    """Campaigns of another water than the one of the file's SI values, which is that of the first."""
+    file = study.parameter_files[name]
+    of, density = {c.campaign for c in file.coefficients}, file.conditions.density
+    others = {t.campaign: t.conditions.density for t in study.tables if t.campaign in of}
+    if apart := [f"{c} {x:g}" for c, x in others.items() if abs(x / density - 1.0) > ANOTHER]:
+        yield Check.of("conditions.waters", f"{name} density", Severity.NOTE, density=density, others=", ".join(apart))
 
 
 def _water(name: str, low: float, high: float) -> Iterator[Check]:

@@ -48,7 +48,8 @@ def _datum(body: Body) -> list[Check]:
 
     if not isinstance(body.shape, TriangleMesh) or body.datum.id not in ENDS:
         return []
-    back, front = (float(f(body.shape.vertices[:, 0])) for f in (min, max))
+    x = body.shape.vertices[:, 0]
+    back, front = float(x.min()), float(x.max())
     ahead = ENDS[body.datum.id][0] * (front - back)
     if abs(front - ahead) <= OFF * (front - back):
         return []
