@@ -267,7 +267,8 @@ def _of_company(
             return Proposal("ignore", note, note=note)
     if bare in vocabulary().lists["angle"] and "lift" in names and not {"alpha", "beta", "v", "w"} & names:
         return replace(proposed(replace(column, name="alpha"), stated), certain=False, note="one angle beside lift")
-    if one.meaning and one.meaning.name == "lift" and {"beta", "v"} & names and not {"alpha", "w"} & names:
+    of_lift = column.unit in PURE and one.meaning is not None and one.meaning.name == "lift"
+    if of_lift and {"beta", "v"} & names and not {"alpha", "w"} & names:
         return replace(one, text="ignore", why=f"{one.why}; no column alpha")
     alone = "drag" in names and not {"Y", "N", "side", "beta", "r"} & names
     if bare == "v" and alone and fits(column.unit, "speed") and known.size and known.min() >= 0.0:
