@@ -39,6 +39,7 @@ CALIBRATED_ROWS = 100
 TIMES_A_BATCH = 4.0  # autocorrelation times
 SHARE = 0.01  # of a value: a drift below it, or a whole window within it, does not matter
 OF_THE_WHOLE = 0.05  # a component counts as at least this share of the whole force, or moment: see `scales`
+MOST_NAMED = 6  # forces that a sentence names; the rest by their number
 SIGNIFICANCE = 0.03
 LONGEST = 20_000  # rows; longer histories are first averaged in blocks, which changes no mean over whole blocks
 DIGITS = 1e-6  # no error is below half a unit of the sixth digit of the whole force: histories are written to as many
@@ -406,13 +407,14 @@ def _why(means: Mapping[str, Mean], status: Convergence, rows: int, block: int) 
     if status is Convergence.DRIFTING:
         worst = ", ".join(f"{c} by {m.trend:+.2g}" for c, m in of.items())
         return f"still moves over the plateau: {worst}"
+    names = [*of][:MOST_NAMED] + [f"{len(of) - MOST_NAMED} more"] * (len(of) > MOST_NAMED)
     longest = max((m.correlation for m in of.values() if np.isfinite(m.correlation)), default=np.nan)
     if rows < LEAST_ROWS or not np.isfinite(longest):
         return f"{rows} row{'s' * (rows != 1)} on the plateau, {LEAST_ROWS} needed"
     needed = LEAST_BATCHES * _least_batch(longest) * block
     one = len(of) == 1
     return (
-        f"{', '.join(of)} span{'s' * one} more than {100 * SHARE:g} % and {'is' if one else 'are'} correlated over "
+        f"{', '.join(names)} span{'s' * one} more than {100 * SHARE:g} % and {'is' if one else 'are'} correlated over "
         f"{longest * block:.3g} rows: {rows * block} on the plateau, {needed} needed"
     )
 
