@@ -403,10 +403,12 @@ def joined_tables(parts: Sequence[Part]) -> tuple[Part, ...]:
                         "tables.two_values_of_joined_tables", p.raw.path, value=before.value, place=before.place, other=one.value,
                         name=p.name, other_place=one.place, setting=key, join=JOIN,
                     )  # fmt: skip
-        columns = []
+        columns, joints = [], tuple(np.cumsum([len(p.raw) for p in own[:-1]]).tolist())
         for many in zip(*(p.raw.columns for p in own), strict=True):
             texts = tuple(t for c in many for t in texts_of(c)) if any(c.is_text for c in many) else ()
-            columns.append(replace(many[0], values=np.concatenate([c.values for c in many]), texts=texts))
+            columns.append(
+                replace(many[0], values=np.concatenate([c.values for c in many]), texts=texts, joints=joints)
+            )
         origin = tuple(p.name for p in own for _ in range(len(p.raw)))
         columns.append(RawColumn("from", "", np.full(len(origin), np.nan), origin, "label"))
         first = own[0].raw

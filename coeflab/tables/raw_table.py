@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from coeflab.core.errors import InputError
 from coeflab.core.types import Array, brief, locked
+from coeflab.tables.columns import FEWEST, rounded_to
 
 HALF_MODEL = "campaign.half_model"  # key of what a symmetry plane in the domain leaves open
 NO_FORCES = "a case without forces"  # what an importer says to have found where a case was never run
@@ -61,6 +62,8 @@ class RawColumn:
     means : str
         Plain name that the format itself fixes (``Y``, ``se_Y``, ``N``, ``r``, ``beta``, ``U``, ``cells``, ``time``);
         empty where a person has to say it.
+    joints : tuple of int
+        Rows at which another file begins, of files that were joined.
     """
 
     name: str
@@ -68,6 +71,7 @@ class RawColumn:
     values: Array
     texts: tuple[str, ...] = ()
     means: str = ""
+    joints: tuple[int, ...] = ()
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "values", locked(self.values))
@@ -76,6 +80,15 @@ class RawColumn:
     def is_text(self) -> bool:
         """Whether a cell is neither a number nor blank."""
         return bool(self.texts)
+
+    @property
+    def rounding(self) -> Array:
+        """Standard errors by the last digit of each row's own file, (n,); of one with too few numbers to show it, by the coarsest."""
+        files = np.split(self.values, self.joints)
+        own = [rounded_to(values) for values in files]
+        coarsest = max(own) or rounded_to(self.values)
+        few = [np.count_nonzero(np.nan_to_num(values)) < FEWEST for values in files]
+        return np.repeat(np.where(few, np.maximum(own, coarsest), own), [len(values) for values in files])
 
 
 class SeveralError(InputError):
