@@ -95,9 +95,10 @@ def _columns(cells: Cells, campaign: Campaign, table: TableDeclaration) -> Colum
             scale = 1.0 if kind.primed else factor(header.unit or "", kind.dimension)
             own["shown"] = np.full(len(cells), rounded_to(cells.numbers(header.name)) * scale)
         for role, column in own.items():
-            given[role][kind.name] = column
             if kind.primed:
                 primes.append((role, kind, column))
+            else:
+                given[role][kind.name] = column
     shares = {kind.name: values for role, kind, values in primes if role == "velocity"}
     speed = speed_of_rows(
         given["speed"].get("U"), given["velocity"], shares, campaign, len(cells), bool(given["angle"])
