@@ -316,8 +316,7 @@ def _holding(near: list[tuple[float, float, float]], value: float | None, u95: f
 
 def _digits(rows: SweepRows, component: str, length: float, x: Array) -> Array:
     """Primed standard errors by the last printed digit of readings at settings (n,), the coarsest of several at one; zero of all digits."""
-    table = rows.table
-    every = table.primed_force(component, length, table.digits[component])[rows.rows]
+    every = rows.table.primed_force(component, length, rows.table.digits[component])[rows.rows]
     if not np.any(every):
         return np.zeros(len(x))
     apart = np.abs(rows.x[rows.rows] - x[:, None])

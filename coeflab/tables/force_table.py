@@ -251,12 +251,12 @@ class ForceTable:
     @property
     def digits(self) -> dict[str, Array]:
         """Standard errors of forces by their last printed digit, (n,) each; zero of other numbers than those that were read."""
-        none = {c: (f, np.zeros(len(self))) for c, f in self.forces.items()}
-        read = {c: (self.forces[c], *r) for c, r in {**none, **self.rounding}.items() if c in self.forces}
-        return {
-            c: error if np.array_equal(shown, f, equal_nan=True) else none[c][1]
-            for c, (f, shown, error) in read.items()
+        same = {
+            c: np.array_equal(r[0], self.forces[c], equal_nan=True)
+            for c, r in self.rounding.items()
+            if c in self.forces
         }
+        return {c: self.rounding[c][1] if same.get(c) else np.zeros(len(self)) for c in self.forces}
 
     @property
     def run_at(self) -> str:
