@@ -93,7 +93,7 @@ def _rows(tables: Sequence[ForceTable], axis: str, chosen: Options) -> Rows | No
         x={axis: np.concatenate([t.motion[axis][i] for t, i in parts])},
         y=np.concatenate([t.forces[component][i] for t, i in parts]),
         errors=all_known([t.errors[component][i] if component in t.errors else None for t, i in parts]),
-        rounding=all_known([t.digits[component][i] if component in t.digits else None for t, i in parts]),
+        rounding=np.concatenate([t.digits[component][i] for t, i in parts]),
         labels=tuple(t.labels[k] for t, i in parts for k in i),
         response=component,
         tables=tuple(t.name for t, _ in parts),

@@ -315,12 +315,12 @@ def _holding(near: list[tuple[float, float, float]], value: float | None, u95: f
 
 
 def _digits(rows: SweepRows, component: str, length: float, x: Array) -> Array:
-    """Primed standard errors by the last printed digit of readings at settings (n,); zero where a table has all digits."""
-    table = rows.table
-    if component not in table.digits:
+    """Primed standard errors by the last printed digit of readings at settings (n,), the coarsest of several at one; zero of all digits."""
+    every = rows.table.primed_force(component, length, rows.table.digits[component])[rows.rows]
+    if not np.any(every):
         return np.zeros(len(x))
-    every = table.primed_force(component, length, table.digits[component])[rows.rows]
-    return np.asarray(every[np.argmin(np.abs(rows.x[rows.rows] - x[:, None]), axis=1)])
+    apart = np.abs(rows.x[rows.rows] - x[:, None])
+    return np.asarray(np.where(apart <= apart.min(axis=1, keepdims=True), every, 0.0).max(axis=1))
 
 
 def _random(origin: OriginSlope, moved: Array, u95: float | None) -> float | None:

@@ -15,8 +15,10 @@ from coeflab.core.errors import InputError, together
 from coeflab.core.texts import input_error
 from coeflab.core.types import Array, brief
 
+DIGIT = "digit_"  # before the name of a force: a column of the last digits that its source printed
 FEWEST = 3  # numbers that show the last digit of their column
 MOST_DIGITS, SAME = 9, 1e-12  # behind the point; of the largest number: what a conversion leaves
+UNIFORM = 12.0**0.5  # a digit over its standard error
 
 
 @brief
@@ -44,7 +46,7 @@ class Columns:
         X Y Z K M N and their standard errors, N and N m; NaN where blank. Of ``drag``, ``lift`` (up) and ``side`` (to
         starboard), along and across the flow, `in_body_axes` makes X, Y and Z.
     rounding : dict of str to array
-        Standard errors of the forces by the last digit that the file prints of them (`rounded_to`); none of a full-precision column.
+        Standard errors of the forces by the last digit that the file prints of them (`rounded_to`); zero of a full-precision column.
     labels : dict of str to list of str
     doubtful : tuple of frozenset of str
         For every row the plain names of columns whose digits are doubtful in the source.
@@ -140,6 +142,12 @@ class Columns:
             if (row := first_row(~(values > 0.0) & ~unused)) is not None:
                 found = "a blank cell" if np.isnan(values[row]) else f"{values[row]:g}"
                 yield self.fail("tables.standard_error_of_row", row=row, name=f"se_{name}", found=found)
+        for name, values in self.rounding.items():
+            if name not in self.forces:
+                yield self.fail("tables.digit_without_force", name=f"{DIGIT}{name}", force=name)
+            elif (row := first_row(~(values >= 0.0) & ~np.isnan(self.forces[name]))) is not None:
+                found = "a blank cell" if np.isnan(values[row]) else f"{values[row] * UNIFORM:g}"
+                yield self.fail("tables.digit_of_row", row=row, name=f"{DIGIT}{name}", found=found)
 
 
 def rounded_to(numbers: Array) -> float:
@@ -164,7 +172,7 @@ def rounded_to(numbers: Array) -> float:
         return 0.0
     for digits in range(MOST_DIGITS + 1):
         if np.all(np.abs(known - np.round(known, digits)) <= SAME * size):
-            return float(10.0**-digits / 12.0**0.5)
+            return float(10.0**-digits / UNIFORM)
     return 0.0
 
 

@@ -19,6 +19,7 @@ from coeflab.core.types import Array
 from coeflab.core.units import parse_header
 from coeflab.law.symbols import COMPONENTS, CONTROL_COLUMNS, CONTROLS, MOTIONS
 from coeflab.tables.column_map import WIND, share
+from coeflab.tables.columns import DIGIT
 from coeflab.tables.raw_table import RawColumn
 from coeflab.tables.vocabulary import folded, vocabulary
 
@@ -538,5 +539,9 @@ def is_house_table(path: Path) -> bool:
         return False
     head = next((line for line in text.split("\n") if line.strip() and not line.lstrip().startswith("#")), "")
     headers = [parse_header(cell.strip().strip('"')) for cell in head.split(",")]
-    united = [h.name.removeprefix("se_").removesuffix("'") in _HOUSE for h in headers if h.unit is not None]
+    united = [
+        h.name.removeprefix("se_").removeprefix(DIGIT).removesuffix("'") in _HOUSE
+        for h in headers
+        if h.unit is not None
+    ]
     return "\0" not in text and "\r" not in head.rstrip("\r") and bool(united) and all(united)

@@ -250,9 +250,13 @@ class ForceTable:
 
     @property
     def digits(self) -> dict[str, Array]:
-        """Standard errors of forces by their last printed digit, (n,) each; none of other numbers than those that were read."""
-        read = {c: r for c, r in self.rounding.items() if c in self.forces and np.any(r[1])}
-        return {c: r[1] for c, r in read.items() if np.array_equal(r[0], self.forces[c], equal_nan=True)}
+        """Standard errors of forces by their last printed digit, (n,) each; zero of other numbers than those that were read."""
+        same = {
+            c: np.array_equal(r[0], self.forces[c], equal_nan=True)
+            for c, r in self.rounding.items()
+            if c in self.forces
+        }
+        return {c: self.rounding[c][1] if same.get(c) else np.zeros(len(self)) for c in self.forces}
 
     @property
     def run_at(self) -> str:

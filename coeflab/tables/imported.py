@@ -23,6 +23,7 @@ from coeflab.core.wording import identifier, one_line
 from coeflab.law.symbols import CONTROL_COLUMNS
 from coeflab.tables.campaign import FILE, CampaignFile, cut_of, read_campaign
 from coeflab.tables.column_map import ColumnMap
+from coeflab.tables.columns import DIGIT, UNIFORM, rounded_to
 from coeflab.tables.conditions import BETWEEN
 from coeflab.tables.evidence import SLENDER
 from coeflab.tables.force_table import ForceTable
@@ -341,18 +342,24 @@ def _table(
             texts = texts_of(one.column)
             cells.append([one_line(texts[row]).strip() for row in rows])
             continue
-        own = one.column.values * (-1.0 if given.negative else 1.0)
+        scale = np.ones(len(raw))
         if given.area:
-            own = own * (given.area * (given.length or 1.0) / length ** (3 if given.length else 2))
+            scale *= given.area * (given.length or 1.0) / length ** (3 if given.length else 2)
         if given.per_speed:
-            own = own * speed**2
+            scale *= speed**2
         if given.ship:
-            own = own / given.ship**0.5
+            scale /= given.ship**0.5
         if given.pure:
-            own = own * abs(one.factor)
+            scale *= abs(one.factor)
+        own = one.column.values * (-scale if given.negative else scale)
         values = np.where(np.isnan(one.values), np.nan, own)[rows]
         heads.append(_head(given))
         cells.append(["" if np.isnan(x) else repr(x + 0.0) for x in values.tolist()])
+        if given.role == "force" and not np.allclose(
+            digit := (one.column.rounding * scale)[rows], rounded_to(values), atol=0.0
+        ):
+            heads.append(DIGIT + _head(given))
+            cells.append([f"{x:.6g}" for x in (digit * UNIFORM).tolist()])
         for row in rows[np.isnan(values)] if given.role == "force" else ():
             doubts[row].add(given.name)
     for head, number in constants.items():

@@ -29,7 +29,7 @@ from coeflab.tables.column_map import (
     share,
     unturned,
 )
-from coeflab.tables.columns import Columns, rounded_to
+from coeflab.tables.columns import Columns
 from coeflab.tables.dialect import Marks
 from coeflab.tables.force_table import ForceTable
 from coeflab.tables.importers import IMPORTERS
@@ -344,8 +344,7 @@ def _columns(raw: RawTable, known: Sequence[Assigned], campaign: Campaign) -> Co
             values = one.values[rows]
             given[one.meaning.role][one.meaning.name] = values
             if one.meaning.role == "force":
-                last = rounded_to(one.column.values) * abs(one.factor)
-                given["rounding"][one.meaning.name] = np.full(len(rows), last)
+                given["rounding"][one.meaning.name] = one.column.rounding[rows] * abs(one.factor)
             if one.meaning.primed and one.meaning.role == "velocity":
                 primes[one.meaning.name] = values
     own = {name: values for name, values in given["velocity"].items() if name not in primes}

@@ -16,10 +16,11 @@ import numpy as np
 
 from coeflab.core.errors import InputError, shown, together
 from coeflab.core.texts import input_error
-from coeflab.core.types import brief
+from coeflab.core.types import Array, brief
 from coeflab.core.wording import listed, natural
 from coeflab.law.symbols import COMPONENTS
 from coeflab.tables.column_company import proposals
+from coeflab.tables.columns import FEWEST, UNIFORM, rounded_to
 from coeflab.tables.conditions import BETWEEN, SETTINGS, SPELT, UNIT_ASKED, NoConditionError, name_pattern
 from coeflab.tables.form import Group, Line
 from coeflab.tables.importers import IMPORTERS
@@ -406,7 +407,8 @@ def joined_tables(parts: Sequence[Part]) -> tuple[Part, ...]:
         columns = []
         for many in zip(*(p.raw.columns for p in own), strict=True):
             texts = tuple(t for c in many for t in texts_of(c)) if any(c.is_text for c in many) else ()
-            columns.append(replace(many[0], values=np.concatenate([c.values for c in many]), texts=texts))
+            values = np.concatenate([c.values for c in many])
+            columns.append(replace(many[0], values=values, texts=texts, digits=_digits_of(many)))
         origin = tuple(p.name for p in own for _ in range(len(p.raw)))
         columns.append(RawColumn("from", "", np.full(len(origin), np.nan), origin, "label"))
         first = own[0].raw
@@ -422,6 +424,14 @@ def joined_tables(parts: Sequence[Part]) -> tuple[Part, ...]:
             del out[n]
     found = tuple(out.values())
     return found if len(found) > 1 else (replace(found[0], name=""),)
+
+
+def _digits_of(files: Sequence[RawColumn]) -> Array:
+    """The last digits of one column of several files, (n,): each file its own, one of too few numbers to show it the coarsest of all."""
+    own = [c.rounding * UNIFORM for c in files]
+    coarsest = np.max(np.concatenate(own)) or rounded_to(np.concatenate([c.values for c in files])) * UNIFORM
+    few = (c.digits is None and np.count_nonzero(np.nan_to_num(c.values)) < FEWEST for c in files)
+    return np.concatenate([np.full(len(d), coarsest) if f else d for d, f in zip(own, few, strict=True)])
 
 
 def _common(names: Sequence[str]) -> str:

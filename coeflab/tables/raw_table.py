@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from enum import StrEnum
 from pathlib import Path
 from types import MappingProxyType
@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from coeflab.core.errors import InputError
 from coeflab.core.types import Array, brief, locked
+from coeflab.tables.columns import DIGIT, UNIFORM, rounded_to
 
 HALF_MODEL = "campaign.half_model"  # key of what a symmetry plane in the domain leaves open
 NO_FORCES = "a case without forces"  # what an importer says to have found where a case was never run
@@ -61,6 +62,8 @@ class RawColumn:
     means : str
         Plain name that the format itself fixes (``Y``, ``se_Y``, ``N``, ``r``, ``beta``, ``U``, ``cells``, ``time``);
         empty where a person has to say it.
+    digits : (n,) array or None
+        Last digit of every number, in the same unit, zero of one with all digits; None where the numbers themselves show it.
     """
 
     name: str
@@ -68,6 +71,7 @@ class RawColumn:
     values: Array
     texts: tuple[str, ...] = ()
     means: str = ""
+    digits: Array | None = None
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "values", locked(self.values))
@@ -76,6 +80,11 @@ class RawColumn:
     def is_text(self) -> bool:
         """Whether a cell is neither a number nor blank."""
         return bool(self.texts)
+
+    @property
+    def rounding(self) -> Array:
+        """Standard errors by the last digit, in the column's unit, (n,)."""
+        return np.full(len(self.values), rounded_to(self.values)) if self.digits is None else self.digits / UNIFORM
 
 
 class SeveralError(InputError):
@@ -94,6 +103,7 @@ class RawTable:
     path : Path
         File or folder that it was read from.
     columns : tuple of RawColumn
+        A column ``digit_Y`` beside one ``Y`` in its unit becomes the ``digits`` of that.
     header_line : int
         Line of the column names in the file; 0 where it has none.
     lines : (n,) integer array
@@ -124,6 +134,14 @@ class RawTable:
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "lines", locked(self.lines, np.int64))
+        names = {(DIGIT + c.name, c.unit): c.name for c in self.columns}
+        digits = {
+            names[c.name, c.unit]: c for c in self.columns if (c.name, c.unit) in names and np.all(c.values >= 0.0)
+        }
+        if digits:
+            own = [c for c in self.columns if c not in digits.values()]
+            known = (replace(c, digits=digits[c.name].values) if c.name in digits else c for c in own)
+            object.__setattr__(self, "columns", tuple(known))
         for name in ("dialect", "stated"):
             object.__setattr__(self, name, MappingProxyType(dict(getattr(self, name))))
 

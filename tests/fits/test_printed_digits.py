@@ -62,7 +62,7 @@ def test_units_signs_points_halves_and_densities_carry_it() -> None:
     assert about.digits["N"] * UNIFORM == pytest.approx(0.01 + 1.5 * 0.1)
     salt = replace(table(np.round(CURVE * UNIT, 1)), density=np.full(len(V), 2000.0)).at_one_density()
     assert salt.digits["Y"] * UNIFORM == pytest.approx(0.05)
-    assert not replace(about, forces={"Y": about.forces["Y"] + 1.0}).digits  # other numbers than were read
+    assert not np.any(replace(about, forces={"Y": about.forces["Y"] + 1.0}).digits["Y"])  # other numbers than were read
 
 
 def test_columns_of_a_campaign_carry_it_through_primes_and_half_models(tmp_path: Path) -> None:
@@ -128,3 +128,42 @@ def test_a_fixed_form_and_damping_hold_the_bound_of_a_staircase() -> None:
     bare = cf.fit(replace(digit, rounding={}), "linear_quadratic_damping", axes=["v"], terms="linear")
     assert own["Yv'"].value == bare["Yv'"].value
     assert own["Yv'"].u95 > 1.01 * bare["Yv'"].u95
+
+
+def test_rows_with_a_digit_of_their_own_hold_a_slope_that_the_finest_does_not() -> None:
+    """Three decimals within 5 deg, five beyond. By the finest 62 % of such campaigns held their slope, by the coarsest 93 %."""
+    v = np.sin(np.radians(np.arange(-12.0, 12.1, 1.0)))
+    held = dict.fromkeys(("own", "finest"), 0)
+    for seed in range(8):
+        slope, bend = np.random.default_rng(seed).uniform((-0.05, -0.3), (-0.01, -0.02))
+        digit = np.where(np.abs(v) < np.sin(np.radians(5.0)), 1e-3, 1e-5)
+        force = np.round((slope * v + bend * v * np.abs(v)) / digit) * digit * UNIT
+        whole = cf.read_table({"v [m/s]": 2.0 * v, "Y [N]": force}, name="drift", **KEYS)
+        for name, own in (("own", digit), ("finest", np.full(len(v), 1e-5))):
+            found = cf.fit(replace(whole, rounding={"Y": np.stack([force, own * UNIT / UNIFORM])}))["Yv'"]
+            held[name] += abs(found.value - slope) < found.u95
+    assert held["own"] == 8 > held["finest"]
+
+
+def test_rows_with_all_digits_count_as_such_beside_printed_ones() -> None:
+    """As printed ones of a median digit they would hold less: 93 % of campaigns for 100 %."""
+    v = np.sin(np.radians(np.arange(-12.0, 12.1, 1.0)))
+    force, few = -0.028 * v - 0.06 * v * np.abs(v), np.abs(v) > np.sin(np.radians(5.0))
+    force = np.where(few, np.round(force, 3), force) * UNIT
+    whole = cf.read_table({"v [m/s]": 2.0 * v, "Y [N]": force}, name="drift", **KEYS)
+    digits = (np.where(few, 1e-3, 0.0), np.full(len(v), 1e-3))
+    own, every = (cf.fit(replace(whole, rounding={"Y": np.stack([force, d * UNIT / UNIFORM])}))["Yv'"] for d in digits)
+    assert abs(own.value + 0.028) < own.u95 < 0.7 * every.u95
+
+
+def test_a_moment_and_a_second_table_keep_the_digit_of_the_one_that_has_it() -> None:
+    force = np.round(CURVE * UNIT, 1)
+    whole = table(force, CURVE * UNIT)  # N has all digits
+    assert not np.any(whole.digits["N"])
+    assert whole.about(np.array([0.5, 0.0, 0.0])).digits["N"] * UNIFORM == pytest.approx(1.5 * 0.1)
+    other = replace(table(CURVE * UNIT), name="other/table")
+    kinds = ((whole, other), (other, whole), (other,))
+    felt = [cf.fit(list(k), "polynomial", variable="v", degree=1).fits[0].models[0].rounding for k in kinds]
+    assert felt[2] is None
+    assert felt[0] is not None
+    assert felt[0] == pytest.approx(felt[1])

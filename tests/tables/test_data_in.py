@@ -284,7 +284,7 @@ def test_a_table_by_the_square_of_the_speed_is_in_newton(tmp_path: Path) -> None
     known = assigned(raw, {name: read_column_map(text) for name, text in mapping.items()})
     settings = {"conditions.speed": Setting("1 m/s", ""), "scaling.length": Setting("4 m", "")}
     written = _table(raw, known, settings, {})[0].decode().split("\n")
-    assert written[1:3] == ["point,beta [deg],U [m/s],Y [N]", "line 3,-4.0,2.0,12.0"]
+    assert written[1:3] == ["point,beta [deg],U [m/s],Y [N],digit_Y [N]", "line 3,-4.0,2.0,12.0,4"]
 
 
 def test_a_name_that_reads_as_no_number_is_a_name(tmp_path: Path) -> None:

@@ -68,7 +68,7 @@ class Rows:
     set_aside : SetAside or None
         Printed rows that are rejected or doubtful.
     rounding : (n,) array or None
-        Standard errors of y by its last printed digit; None where a row has all digits.
+        Standard errors of y by its last printed digit, zero of rows with all digits; None where nobody knows them.
     """
 
     x: Mapping[str, Array]
@@ -156,7 +156,7 @@ def collect(tables: Sequence[ForceTable], variables: Sequence[str], name: str, a
     """
     xs: dict[str, list[Array]] = {v: [] for v in variables}
     ys: list[Array] = []
-    errors, rounding = list[Array | None](), list[Array | None]()
+    errors, rounding = list[Array | None](), list[Array]()
     labels: list[str] = []
     names: list[str] = []
     set_aside: list[SetAside] = []
@@ -169,8 +169,8 @@ def collect(tables: Sequence[ForceTable], variables: Sequence[str], name: str, a
             xs[v].append(variable(table, v, area.length)[usable])
         ys.append(y[usable])
         _, digits, _ = response(replace(table, errors=table.digits), name, area)
-        for known, own in ((errors, error), (rounding, digits)):
-            known.append(None if own is None else own[usable])
+        errors.append(None if error is None else error[usable])
+        rounding.append(np.zeros(len(ys[-1])) if digits is None else digits[usable])
         labels += [t for t, u in zip(table.labels, usable, strict=True) if u]
         names.append(table.name)
         set_aside += [] if not table.exclusions else [_set_aside_rows(table, variables, name, area, usable)]
@@ -186,7 +186,7 @@ def collect(tables: Sequence[ForceTable], variables: Sequence[str], name: str, a
         campaign=tables[0].campaign,
         body=tables[0].body,
         set_aside=joined(set_aside),
-        rounding=all_known(rounding),
+        rounding=np.concatenate(rounding),
     )
 
 
@@ -262,7 +262,7 @@ def model_of(
 
 def rounding_of(matrix: Array, rows: Rows, fit: LinearFit, errors: Array | None, free: Array) -> Array | None:
     """(p,) 95 % half-widths by the last printed digit, None where that is not known; ``free`` (p, q) spans what a constraint leaves."""
-    if rows.rounding is None:
+    if rows.rounding is None or not np.any(rows.rounding):
         return None
     root = np.ones(len(rows.y)) if errors is None else 1.0 / errors
     by_row = free @ np.linalg.pinv((matrix @ free) * root[:, None]) * root

@@ -296,7 +296,7 @@ def by_digits(
     x, y, se : (n,) array
         Settings, readings, and stated standard errors or None.
     digits : (n,) array
-        Standard errors by the last digit, that digit over the root of 12.
+        Standard errors by the last digit, that digit over the root of 12; zero of rows with all digits.
     target, plane, odd
         See `determined`.
     noise, value, u95 : float
@@ -304,7 +304,7 @@ def by_digits(
     """
     if np.max(digits, initial=0.0) <= UNSEEN * noise:
         return 0.0
-    errors = np.hypot(digits, 0.0 if se is None else se)
+    errors = np.hypot(np.maximum(digits, UNSEEN * digits.max()), 0.0 if se is None else se)
     other, own = of_rows(x, y, errors, target, float(np.median(errors)), plane, odd)
     if other is None or own is None:
         return 0.0

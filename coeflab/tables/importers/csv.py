@@ -18,7 +18,7 @@ from coeflab.core.wording import Verbatim
 from coeflab.law.symbols import CONTROL_COLUMNS, MOTIONS
 from coeflab.tables.campaign import Campaign, TableDeclaration
 from coeflab.tables.column_map import EXAMPLES, FORCES, ROLES, ColumnMap
-from coeflab.tables.columns import Columns, rounded_to
+from coeflab.tables.columns import DIGIT, UNIFORM, Columns, rounded_to
 from coeflab.tables.dialect import is_house_table
 from coeflab.tables.force_table import ForceTable
 from coeflab.tables.to_frd import force_table, speed_of_rows
@@ -58,7 +58,7 @@ def _unknown(cells: Cells, header: Header) -> InputError:
     near = did_you_mean(header.name)
     return InputError(
         f"the unknown column {shown(header.text)}",
-        f"one of {known}, se_..., {POINT}, {UNCERTAIN}",
+        f"one of {known}, se_..., {DIGIT}..., {POINT}, {UNCERTAIN}",
         file=cells.file,
         line=cells.first_line - 1,
         column=header.text,
@@ -68,10 +68,10 @@ def _unknown(cells: Cells, header: Header) -> InputError:
 
 def _columns(cells: Cells, campaign: Campaign, table: TableDeclaration) -> Columns:
     """The columns in SI. Primed ones need the speed, so they are made dimensional last."""
-    given: dict[str, dict[str, Array]] = {role: {} for role in (*ROLES.values(), "error", "rounding")}
+    given: dict[str, dict[str, Array]] = {role: {} for role in (*ROLES.values(), "error", "shown", "stated")}
     labels: dict[str, list[str]] = {}
     headers: dict[str, str] = {}
-    primes: list[tuple[ColumnMap, Array]] = []
+    primes: list[tuple[str, ColumnMap, Array]] = []
     for header in cells.headers:
         if header.name in table.ignore:
             continue
@@ -80,32 +80,33 @@ def _columns(cells: Cells, campaign: Campaign, table: TableDeclaration) -> Colum
             continue
         if header.name in (table.cells, table.variant):
             continue
-        kind = _kind(header.name)
-        if kind is None:
+        stated = DIGIT * header.name.startswith(DIGIT)
+        kind = _kind(header.name.removeprefix(stated))
+        if kind is None or (stated and kind.role != "force"):
             raise _unknown(cells, header)
-        if (name := kind.plain) in headers:
+        if (name := stated + kind.plain) in headers:
             raise input_error(
                 "tables.column_twice", cells.file, cells.first_line - 1, header.text, headers=headers[name], text=header.text,
             )  # fmt: skip
         headers[name] = header.text
         values = _values(cells, header, kind)
-        if kind.role == "force":
+        own = {"stated": values / UNIFORM} if stated else {kind.role: values}
+        if "force" in own:
             scale = 1.0 if kind.primed else factor(header.unit or "", kind.dimension)
-            given["rounding"][kind.name] = np.full(len(cells), rounded_to(cells.numbers(header.name)) * scale)
-        if kind.primed:
-            primes.append((kind, values))
-        else:
-            given[kind.role][kind.name] = values
-    shares = {kind.name: values for kind, values in primes}
+            own["shown"] = np.full(len(cells), rounded_to(cells.numbers(header.name)) * scale)
+        for role, column in own.items():
+            if kind.primed:
+                primes.append((role, kind, column))
+            else:
+                given[role][kind.name] = column
+    shares = {kind.name: values for role, kind, values in primes if role == "velocity"}
     speed = speed_of_rows(
         given["speed"].get("U"), given["velocity"], shares, campaign, len(cells), bool(given["angle"])
     )
     density = given["density"].get("density")
-    for kind, values in primes:
+    for role, kind, values in primes:
         unit = campaign.scaling.unit(kind.component, campaign.conditions.density if density is None else density, speed)
-        given[kind.role][kind.name] = values * unit
-        if kind.role == "force":
-            given["rounding"][kind.name] = given["rounding"][kind.name] * unit
+        given[role][kind.name] = values * unit
     return Columns(
         file=cells.file,
         header_line=cells.first_line - 1,
@@ -117,7 +118,7 @@ def _columns(cells: Cells, campaign: Campaign, table: TableDeclaration) -> Colum
         speed=speed,
         forces=given["force"],
         errors=given["error"],
-        rounding=given["rounding"],
+        rounding=given["shown"] | given["stated"],
         labels=labels,
         doubtful=_doubtful(cells, labels.get(UNCERTAIN, [""] * len(cells)), headers),
         row_labels=tuple(labels.get(POINT, ())),
