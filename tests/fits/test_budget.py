@@ -122,6 +122,17 @@ def test_a_calibration_is_of_what_the_balance_read_wherever_the_coefficients_are
         assert (found[symbol].part(name) or 0.0) == pytest.approx(abs(moved), rel=0.02, abs=1e-9)
 
 
+def test_a_calibration_is_about_the_point_of_each_table_s_own_balance() -> None:
+    """Before: about that of the first; a moment that was read where it is wanted held 2 % of the force of a lever that no run had."""
+    here = replace(small_table(FULL), source=EXPERIMENT, uncertainty=InputUncertainty(force=ONE))
+    arm = replace(arm_table(), source=EXPERIMENT, uncertainty=InputUncertainty(force=ONE))
+    elsewhere = here.about(np.array([0.3, 0.0, 0.0]))
+    tables = [replace(elsewhere, measured_about=None).about(np.zeros(3)), arm]
+    found = {b.symbol: b for b in budgets_of(fit(tables, LENGTH, {}), {t.name: t for t in tables})}
+    assert found["Nr"].part("force") is None
+    assert found["Nv"].part("force") == pytest.approx(ONE * 0.3 / LENGTH.length * abs(found["Yv"].value), rel=1e-6)
+
+
 def test_the_reference_point_moves_coefficients_as_the_transfer_says() -> None:
     found = found_by(InputUncertainty(reference_point=ONE))
     value = {s: b.value / LENGTH.length for s, b in found.items()}

@@ -65,6 +65,16 @@ def test_units_signs_points_halves_and_densities_carry_it() -> None:
     assert not replace(about, forces={"Y": about.forces["Y"] + 1.0}).digits  # other numbers than were read
 
 
+def test_a_moved_moment_keeps_the_digits_of_one_column_where_the_other_has_all() -> None:
+    """Before it had none: Nv' -0.0018 +- 0.0005 half a metre aft, +- 0.0016 now."""
+    there = np.array([0.5, 0.0, 0.0])
+    whole, coarse = CURVE * UNIT, np.round(CURVE * UNIT, 1)
+    assert table(whole, np.round(whole)).about(there).digits["N"] * UNIFORM == pytest.approx(1.0)
+    assert table(coarse, whole).about(there).digits["N"] * UNIFORM == pytest.approx(1.5 * 0.1)
+    assert "N" not in table(whole, whole).about(there).digits
+    assert table(0.0 * whole, np.round(whole)).about(there).digits["N"] * UNIFORM == pytest.approx(1.0)
+
+
 def test_columns_of_a_campaign_carry_it_through_primes_and_half_models(tmp_path: Path) -> None:
     own = Path(__file__).parents[2] / "cfd_data" / "suboff_roddy_2"
     words = (own / "campaign.toml").read_text()

@@ -198,8 +198,8 @@ def budgets_of(
     declared = tables[sweeps[0].table].uncertainty
     moved = None
     if declared is not None and declared.declared:
-        one = tables[sweeps[0].table]
-        measured = one.reference_point if one.measured_about is None else one.measured_about
+        of = [tables[s.table] for s in sweeps]
+        measured = np.array([t.reference_point if t.measured_about is None else t.measured_about for t in of])
         moved = moved_by(fit, tuple(sweeps), declared, measured, draws, seed)
     found = []
     for i, sweep in enumerate(sweeps):

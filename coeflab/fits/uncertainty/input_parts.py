@@ -107,7 +107,7 @@ def perturbed(sweep: Sweep, names: Sequence[str]) -> Callable[[Array], Array]:
 def moved_by(
     fit: FitResult, sweeps: tuple[Sweep, ...], declared: InputUncertainty, measured: Array, draws: int, seed: int
 ) -> list[tuple[tuple[InputPart, ...], Propagated]]:
-    """Inputs of every sweep's coefficient, and all inputs together by both ways; `measured` is the point (3,) that the balance read about."""
+    """Inputs of every sweep's coefficient, and all inputs together by both ways; `measured` are the points (m, 3) that their balances read about."""
     names = declared.declared
     half = np.array([getattr(declared, n) for n in names], dtype=float)
     function, transferable = _of_inputs(fit, sweeps, names, measured)
@@ -172,16 +172,16 @@ def _of_inputs(
 
 
 def _levers(sweeps: Sequence[Sweep], shift: Array, length: float) -> Array:
-    """(m, m) moments that the coefficients of forces make by a shift (3,) from the point that the balance read about.
+    """(m, m) moments that the coefficients of forces make by shifts (m, 3) from the points that the balances read about.
 
     A calibration is of what is read: of N there and of Y, so that N + T Y here becomes (1 + m) N + (1 + f) T Y.
     """
-    transfer = force_transfer(shift) - np.eye(len(COMPONENTS))
+    transfers = [force_transfer(s) - np.eye(len(COMPONENTS)) for s in shift]
     return np.array([
         [
             transfer[COMPONENTS.index(a.component), COMPONENTS.index(b.component)] / length
             if (a.variable, a.target) == (b.variable, b.target) and {a.component, b.component} <= {*COMPONENTS} else 0.0
             for b in sweeps
         ]
-        for a in sweeps
+        for a, transfer in zip(sweeps, transfers, strict=True)
     ])  # fmt: skip
