@@ -31,6 +31,17 @@ def test_forces_and_added_mass_go_with_the_density_and_mass_and_volume_stay() ->
     assert said["heavier"] == pytest.approx((new.weight - new.buoyancy) / new.hydrostatics.gravity)
 
 
+def test_tables_in_newton_metres_go_with_the_density() -> None:
+    """Before: N = -1.0 r|r| N m of HUUV stayed while the finding says that forces go with the density."""
+    here = read_parameter_file(Path("cfd_data/huuv/huuv.parameters.json"))
+    there = in_water(here, 1.1 * here.conditions.density)
+    turning = np.array([[1.0, 0.1, 0.0, 0.0, 0.0, 0.4]])
+    assert {m.unit for m in here.models} == {"1", "N*m"}
+    assert motion_law(there)[0].force(turning) == pytest.approx(1.1 * motion_law(here)[0].force(turning), rel=1e-12)
+    own, moved = (next(m for m in f.models if m.unit != "1") for f in (here, there))
+    assert moved.terms[0].value == pytest.approx(1.1 * own.terms[0].value)
+
+
 def test_exported_dimensions_are_of_the_other_water() -> None:
     files = cf.export("remus100", "mss", density="1025 kg/m^3").files
     text = next(content for name, content in files.items() if name.endswith(".m")).decode()
