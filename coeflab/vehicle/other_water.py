@@ -41,7 +41,7 @@ def in_water(parameters: ParameterFile, density: float) -> ParameterFile:
     found = [
         Finding.of(
             OTHER_WATER, parameters.name, Severity.WARN if abs(heavier) > 0.0 else Severity.NOTE, statistic=density, threshold=before,
-            heavier=heavier,
+            heavier=heavier, by="massless" if mass is None else "weighed",
         )
     ]  # fmt: skip
     if parameters.thrusters:

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 import coeflab as cf
+from coeflab.core.table import as_check
 from coeflab.formats.export import export
 from coeflab.motion.vehicle import vehicle
 from coeflab.vehicle.force_law import motion_law
@@ -40,6 +41,16 @@ def test_tables_in_newton_metres_go_with_the_density() -> None:
     assert motion_law(there)[0].force(turning) == pytest.approx(1.1 * motion_law(here)[0].force(turning), rel=1e-12)
     own, moved = (next(m for m in f.models if m.unit != "1") for f in (here, there))
     assert moved.terms[0].value == pytest.approx(1.1 * own.terms[0].value)
+
+
+def test_a_file_without_mass_has_no_weight_to_hold_against_its_buoyancy() -> None:
+    here = read_parameter_file(Path("remus100")).model_copy(update={"mass": None})
+    found = [
+        next(f for f in in_water(file, 1000.0).findings if f.code == OTHER_WATER)
+        for file in (here, read_parameter_file(Path("remus100")))
+    ]
+    assert [f["by"] for f in found] == ["massless", "weighed"]
+    assert [" kg above buoyancy" in as_check("export", f).statistic for f in found] == [False, True]
 
 
 def test_exported_dimensions_are_of_the_other_water() -> None:
