@@ -41,7 +41,7 @@ from coeflab.fits.rows.sweeps import (
     one_size,
     sweep_rows,
 )
-from coeflab.fits.statistics import origin_slope, slopes
+from coeflab.fits.statistics import origin_slope, printed_digits, slopes
 from coeflab.fits.statistics.diagnostics import levels
 from coeflab.fits.statistics.many_rows import condensed_rows, images
 from coeflab.law.coefficient import Coefficient, Parts, Status
@@ -185,7 +185,7 @@ def _sweep(
     limit = float(np.sin(np.radians(options.largest_angle))) * (1.0 + slopes.SAME_LEVEL) if is_angle else np.inf
     every = _before_stall(rows, variable, length, _within(limit, collect_points(rows, component, length, taken_out)))
     plane, (x, y, se, labels, far), bias, withdrawn = _by_symmetry(rows, variable, parity, every)
-    odd, each = bool(plane) and parity == "odd", (x, y, se)
+    odd, each, variance = bool(plane) and parity == "odd", (x, y, se), None
     if (
         last is not None
         and odd == (bool(last[0].symmetry) and last[0].parity == "odd")
@@ -203,7 +203,7 @@ def _sweep(
                 LeftOut(float(x[i]), float(y[i]), labels[i], "does not fit its neighbours")
                 for i in np.flatnonzero(few.strip < 0)[:MOST_NAMED]
             )
-            x, y, se = few.x, few.y, origin.noise * np.sqrt(few.variance)
+            x, y, se, variance = few.x, few.y, origin.noise * np.sqrt(few.variance), few.variance
             labels = tuple(f"mean of {n} rows" for n in np.bincount(few.strip[few.strip >= 0]))
         over = float(np.max(np.abs(x), initial=0.0)) * np.linspace(-1.0, 1.0, NODES)
         mean, halves = origin_slope.curve(origin, np.concatenate([x, over]))
@@ -278,9 +278,18 @@ def _sweep(
         held=_angle_across(rows.table, variable),
         bias=bias,
         rounding=0.0
-        if value is None or u95 is None or len(x) != len(each[0])
+        if value is None or u95 is None
         else slopes.by_digits(
-            *each, _digits(rows, component, length, x), target, origin.noise, bool(plane), odd, value, u95
+            x,
+            y,
+            se,
+            _digits(rows, component, length, x, variance, origin.noise),
+            target,
+            origin.noise,
+            bool(plane),
+            odd,
+            value,
+            u95,
         ),
         borrowed=rows.rest[0].name if rows.rest is not None and component in rows.rest[0].forces and not odd else "",
     )
@@ -314,13 +323,16 @@ def _holding(near: list[tuple[float, float, float]], value: float | None, u95: f
     return max([u95, *(abs(v - value) + u for _, v, u in near if abs(v - value) > np.hypot(u, u95))])
 
 
-def _digits(rows: SweepRows, component: str, length: float, x: Array) -> Array:
-    """Primed standard errors by the last printed digit of readings at settings (n,), the coarsest of several at one; zero of all digits."""
+def _digits(rows: SweepRows, component: str, length: float, x: Array, variance: Array | None, noise: float) -> Array:
+    """Primed standard errors by the last printed digit at settings (n,), the coarsest of several at one; of means where these have a
+    variance; zero of all digits.
+    """
     every = rows.table.primed_force(component, length, rows.table.digits[component])[rows.rows]
     if not np.any(every):
         return np.zeros(len(x))
     apart = np.abs(rows.x[rows.rows] - x[:, None])
-    return np.asarray(np.where(apart <= apart.min(axis=1, keepdims=True), every, 0.0).max(axis=1))
+    own = np.asarray(np.where(apart <= apart.min(axis=1, keepdims=True), every, 0.0).max(axis=1))
+    return own if variance is None else printed_digits.of_means(own, variance, noise)
 
 
 def _random(origin: OriginSlope, moved: Array, u95: float | None) -> float | None:

@@ -7,6 +7,7 @@ from dataclasses import replace
 from coeflab.core.finding import Finding, Severity
 from coeflab.vehicle.law_at_points import MeasuredTable
 from coeflab.vehicle.parameter_file import ParameterFile
+from coeflab.vehicle.parameter_model import ParameterModel
 
 MISSES = ("largest", "allowed", "worst", "rms", "worst_beyond")  # N or N m
 OTHER_WATER, THRUST_STAYS = "vehicle.other_water", "vehicle.thrust_stays"
@@ -40,7 +41,7 @@ def in_water(parameters: ParameterFile, density: float) -> ParameterFile:
     found = [
         Finding.of(
             OTHER_WATER, parameters.name, Severity.WARN if abs(heavier) > 0.0 else Severity.NOTE, statistic=density, threshold=before,
-            heavier=heavier,
+            heavier=heavier, by="massless" if mass is None else "weighed",
         )
     ]  # fmt: skip
     if parameters.thrusters:
@@ -52,6 +53,7 @@ def in_water(parameters: ParameterFile, density: float) -> ParameterFile:
         "coefficients": tuple(
             replace(c, value_si=None if c.value_si is None else c.value_si * ratio) for c in parameters.coefficients
         ),
+        "models": tuple(m if m.unit == "1" else _table(m, ratio) for m in parameters.models),
         "measured": tuple(_measured(t, ratio) for t in parameters.measured),
         "law_at_points": tuple(
             held.model_copy(update={name: getattr(held, name) * ratio for name in MISSES})
@@ -60,6 +62,21 @@ def in_water(parameters: ParameterFile, density: float) -> ParameterFile:
         "findings": (*parameters.findings, *found),
     }
     return parameters.model_copy(update=update)
+
+
+def _table(model: ParameterModel, ratio: float) -> ParameterModel:
+    """A fitted table in N or N m, in proportion to the density."""
+
+    def by(value: float | None, factor: float = ratio) -> float | None:
+        return None if value is None else value * factor
+
+    terms = tuple(
+        t.model_copy(update={"value": by(t.value), "half_width_95": by(t.half_width_95)}) for t in model.terms
+    )
+    covariance = tuple(tuple(by(x, ratio**2) for x in row) for row in model.covariance)
+    return model.model_copy(
+        update={"terms": terms, "covariance": covariance, "rms": by(model.rms), "press_rms": by(model.press_rms)}
+    )
 
 
 def _measured(table: MeasuredTable, ratio: float) -> MeasuredTable:

@@ -19,6 +19,7 @@ from coeflab.core.provenance import Source
 from coeflab.core.text.delimited import read_cells
 from coeflab.core.text.toml import read_toml
 from coeflab.fits.results.fit_result import FitResult
+from coeflab.fits.results.fitted_model import DIGITS
 from coeflab.fits.slope_at_origin import fit
 from coeflab.fits.uncertainty.budget import Budget, BudgetPart, budgets_of, covariance, open_parts, with_budget
 from coeflab.fits.uncertainty.grid_convergence import Convergence
@@ -120,6 +121,29 @@ def test_a_calibration_is_of_what_the_balance_read_wherever_the_coefficients_are
     for symbol in ("Yv", "Nv", "Yr", "Nr"):
         moved = (wrong[symbol].value or 0.0) - (right[symbol].value or 0.0)
         assert (found[symbol].part(name) or 0.0) == pytest.approx(abs(moved), rel=0.02, abs=1e-9)
+
+
+def test_a_calibration_is_about_the_point_of_each_table_s_own_balance() -> None:
+    """Before: about that of the first; a moment that was read where it is wanted held 2 % of the force of a lever that no run had."""
+    here = replace(small_table(FULL), source=EXPERIMENT, uncertainty=InputUncertainty(force=ONE))
+    arm = replace(arm_table(), source=EXPERIMENT, uncertainty=InputUncertainty(force=ONE))
+    elsewhere = here.about(np.array([0.3, 0.0, 0.0]))
+    tables = [replace(elsewhere, measured_about=None).about(np.zeros(3)), arm]
+    found = {b.symbol: b for b in budgets_of(fit(tables, LENGTH, {}), {t.name: t for t in tables})}
+    assert found["Nr"].part("force") is None
+    assert found["Nv"].part("force") == pytest.approx(ONE * 0.3 / LENGTH.length * abs(found["Yv"].value), rel=1e-6)
+
+
+def test_printed_digits_of_a_slope_go_along_where_an_arm_s_coefficients_are_moved() -> None:
+    """Before, Yr' moved by 1.5 m of 5 m with 20 N digits of the drift runs: +- 0.0012, now +- 0.0048; those of Yv' alone are 0.0156."""
+    result, tables = both(None, 0.3)
+    sweeps = tuple(replace(s, rounding=1.0 if s.symbol == "Yv" else 0.0) for s in result.sweeps)
+    found = {b.symbol: b.part(DIGITS) for b in budgets_of(replace(result, sweeps=sweeps), tables)}
+    arm = 0.3 / LENGTH.length
+    assert found["Yv"] == pytest.approx(1.0)
+    assert found["Nv"] == pytest.approx(arm, rel=1e-6)
+    assert found["Yr"] == pytest.approx(arm, rel=1e-6)
+    assert found["Nr"] == pytest.approx(arm**2, rel=1e-6)
 
 
 def test_the_reference_point_moves_coefficients_as_the_transfer_says() -> None:

@@ -11,7 +11,7 @@ import pytest
 import coeflab as cf
 from coeflab.core.types import Array
 from coeflab.fits.results.fitted_model import DIGITS
-from coeflab.fits.statistics.printed_digits import UNIFORM, half_width
+from coeflab.fits.statistics.printed_digits import UNIFORM, half_width, of_means
 from coeflab.fits.uncertainty.budget import budgets_of, with_budget
 from coeflab.tables.columns import rounded_to
 from coeflab.tables.force_table import ForceTable
@@ -65,6 +65,16 @@ def test_units_signs_points_halves_and_densities_carry_it() -> None:
     assert not np.any(replace(about, forces={"Y": about.forces["Y"] + 1.0}).digits["Y"])  # other numbers than were read
 
 
+def test_a_moved_moment_keeps_the_digits_of_one_column_where_the_other_has_all() -> None:
+    """Before it had none: Nv' -0.0018 +- 0.0005 half a metre aft, +- 0.0016 now."""
+    there = np.array([0.5, 0.0, 0.0])
+    whole, coarse = CURVE * UNIT, np.round(CURVE * UNIT, 1)
+    assert table(whole, np.round(whole)).about(there).digits["N"] * UNIFORM == pytest.approx(1.0)
+    assert table(coarse, whole).about(there).digits["N"] * UNIFORM == pytest.approx(1.5 * 0.1)
+    assert "N" not in table(whole, whole).about(there).digits
+    assert table(0.0 * whole, np.round(whole)).about(there).digits["N"] * UNIFORM == pytest.approx(1.0)
+
+
 def test_columns_of_a_campaign_carry_it_through_primes_and_half_models(tmp_path: Path) -> None:
     own = Path(__file__).parents[2] / "cfd_data" / "suboff_roddy_2"
     words = (own / "campaign.toml").read_text()
@@ -100,6 +110,27 @@ def test_the_part_is_named_and_goes_into_the_covariance() -> None:
     assert not [
         f for f in with_budget(bare, budgets_of(bare, {whole.name: whole})).findings if f.code == "budget.digits"
     ]
+
+
+def test_many_rows_of_coarse_digits_hold_the_staircase() -> None:
+    """Means of rows beside each other keep it. Before, U95 of 150 rows without scatter missed 13 of 40 planted slopes, now 1."""
+    v = np.sin(np.radians(np.linspace(-12.0, 12.0, 150)))
+    missed = {True: 0, False: 0}
+    for digits in range(3, 11):
+        curve = -0.02 * v - 0.09 * v * np.abs(v)
+        scale = digits / np.max(np.abs(curve))
+        whole = cf.read_table({"v [m/s]": 2.0 * v, "Y [N]": np.round(scale * curve)}, name="drift", **KEYS)
+        for printed, one in ((True, whole), (False, replace(whole, rounding={}))):
+            found = cf.fit(one)["Yv'"]
+            missed[printed] += abs(found.value + 0.02 * scale / UNIT) > found.u95
+    assert missed[True] == 0
+    assert missed[False] > 0
+
+
+def test_means_of_scattered_rows_average_the_rounding() -> None:
+    size, variance = np.full(2, 0.1), np.array([0.25, 1.0])
+    assert of_means(size, variance, 0.0) == pytest.approx([0.1, 0.1])
+    assert of_means(size, variance, 1.0) == pytest.approx([0.05, 0.1])
 
 
 def test_digits_far_below_the_scatter_say_nothing() -> None:

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 import coeflab as cf
+from coeflab.core.table import as_check
 from coeflab.formats.export import export
 from coeflab.motion.vehicle import vehicle
 from coeflab.vehicle.force_law import motion_law
@@ -29,6 +30,27 @@ def test_forces_and_added_mass_go_with_the_density_and_mass_and_volume_stay() ->
     assert ParameterFile.model_validate_json(there.to_json()).conditions.density == there.conditions.density
     said = next(f for f in there.findings if f.code == OTHER_WATER)
     assert said["heavier"] == pytest.approx((new.weight - new.buoyancy) / new.hydrostatics.gravity)
+
+
+def test_tables_in_newton_metres_go_with_the_density() -> None:
+    """Before: N = -1.0 r|r| N m of HUUV stayed while the finding says that forces go with the density."""
+    here = read_parameter_file(Path("cfd_data/huuv/huuv.parameters.json"))
+    there = in_water(here, 1.1 * here.conditions.density)
+    turning = np.array([[1.0, 0.1, 0.0, 0.0, 0.0, 0.4]])
+    assert {m.unit for m in here.models} == {"1", "N*m"}
+    assert motion_law(there)[0].force(turning) == pytest.approx(1.1 * motion_law(here)[0].force(turning), rel=1e-12)
+    own, moved = (next(m for m in f.models if m.unit != "1") for f in (here, there))
+    assert moved.terms[0].value == pytest.approx(1.1 * own.terms[0].value)
+
+
+def test_a_file_without_mass_has_no_weight_to_hold_against_its_buoyancy() -> None:
+    here = read_parameter_file(Path("remus100")).model_copy(update={"mass": None})
+    found = [
+        next(f for f in in_water(file, 1000.0).findings if f.code == OTHER_WATER)
+        for file in (here, read_parameter_file(Path("remus100")))
+    ]
+    assert [f["by"] for f in found] == ["massless", "weighed"]
+    assert [" kg above buoyancy" in as_check("export", f).statistic for f in found] == [False, True]
 
 
 def test_exported_dimensions_are_of_the_other_water() -> None:

@@ -35,6 +35,26 @@ def half_width(by_row: Array, rounding: Array, noise: float) -> Array:
     size = float(np.max(rounding, initial=0.0))
     independent = 2.0 * np.linalg.norm(by_row * rounding, axis=1)
     bound = np.abs(by_row) @ rounding * (UNIFORM / 2.0)
+    return np.asarray(np.sqrt(independent**2 + np.maximum(bound**2 - independent**2, 0.0) * _staircase(size, noise)))
+
+
+def of_means(rounding: Array, variance: Array, noise: float) -> Array:
+    """Standard errors of means (m,) by rounding: the staircase is in the mean of readings beside each other, what is independent is not.
+
+    Parameters
+    ----------
+    rounding : (m,) array
+        Standard error of a reading by its last digit.
+    variance : (m,) array
+        Of a mean over that of a reading.
+    noise : float
+        As in `half_width`.
+    """
+    left = _staircase(float(np.max(rounding, initial=0.0)), noise)
+    return np.asarray(rounding * np.sqrt(variance + np.maximum(1.0 - variance, 0.0) * left))
+
+
+def _staircase(size: float, noise: float) -> float:
+    """What noise leaves of the variance of the staircase."""
     own = max(noise**2 - size**2, 0.0) / (UNIFORM * size) ** 2 if size else 0.0
-    remaining = np.exp(-4.0 * np.pi**2 * own)
-    return np.asarray(np.sqrt(independent**2 + np.maximum(bound**2 - independent**2, 0.0) * remaining))
+    return float(np.exp(-4.0 * np.pi**2 * own))

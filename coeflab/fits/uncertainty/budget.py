@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from coeflab.law.coefficient import Coefficient, CoefficientSet
     from coeflab.tables.force_table import ForceTable
 
-from coeflab.fits.uncertainty.input_parts import InputPart, acting, moved_by
+from coeflab.fits.uncertainty.input_parts import InputPart, acting, moved_by, moved_digits
 
 DRAWS, SEED = 2000, 1  # 2.5 % tails of 50 draws each: half-widths to about 3 %
 TELLING = 0.05  # of the largest force: the relative grid error of a smaller one says nothing
@@ -198,19 +198,24 @@ def budgets_of(
     declared = tables[sweeps[0].table].uncertainty
     moved = None
     if declared is not None and declared.declared:
-        one = tables[sweeps[0].table]
-        measured = one.reference_point if one.measured_about is None else one.measured_about
+        of = [tables[s.table] for s in sweeps]
+        measured = np.array([t.reference_point if t.measured_about is None else t.measured_about for t in of])
         moved = moved_by(fit, tuple(sweeps), declared, measured, draws, seed)
-    found = []
+    found, digits = [], moved_digits(fit, sweeps)
     for i, sweep in enumerate(sweeps):
         c = fit.coefficients[sweep.symbol]
         if c.value is not None:
-            found.append(_budget(c, sweep, tables[sweep.table], *(moved[i] if moved else ((), None))))
+            found.append(_budget(c, sweep, tables[sweep.table], float(digits[i]), *(moved[i] if moved else ((), None))))
     return tuple(found)
 
 
 def _budget(
-    c: Coefficient, sweep: Sweep, table: ForceTable, inputs: tuple[InputPart, ...], total: Propagated | None
+    c: Coefficient,
+    sweep: Sweep,
+    table: ForceTable,
+    digits: float,
+    inputs: tuple[InputPart, ...],
+    total: Propagated | None,
 ) -> Budget:
     raw = sweep.value or 0.0
     apart = [abs(s.value - raw) for s in sweep.sensitivity if s.value is not None]
@@ -222,7 +227,7 @@ def _budget(
     if _true_by_construction((table,)):
         lacking = []
     window = 2.0 * max(apart) / 3.0**0.5 if apart else None
-    return budget_of(c, sweep.component, (table,), fitted, inputs, total, lacking, window, digits=sweep.rounding)
+    return budget_of(c, sweep.component, (table,), fitted, inputs, total, lacking, window, digits=digits)
 
 
 def budget_of(

@@ -107,7 +107,7 @@ def perturbed(sweep: Sweep, names: Sequence[str]) -> Callable[[Array], Array]:
 def moved_by(
     fit: FitResult, sweeps: tuple[Sweep, ...], declared: InputUncertainty, measured: Array, draws: int, seed: int
 ) -> list[tuple[tuple[InputPart, ...], Propagated]]:
-    """Inputs of every sweep's coefficient, and all inputs together by both ways; `measured` is the point (3,) that the balance read about."""
+    """Inputs of every sweep's coefficient, and all inputs together by both ways; `measured` are the points (m, 3) that their balances read about."""
     names = declared.declared
     half = np.array([getattr(declared, n) for n in names], dtype=float)
     function, transferable = _of_inputs(fit, sweeps, names, measured)
@@ -135,10 +135,29 @@ def moved_by(
 def _of_inputs(
     fit: FitResult, sweeps: tuple[Sweep, ...], names: tuple[str, ...], measured: Array
 ) -> tuple[Callable[[Array], Array], NDArray[np.bool_]]:
-    """All coefficients of a fit as functions of the inputs, (s, k) -> (s, m), and which of them a transfer determines.
+    """All coefficients of a fit as functions of the inputs, (s, k) -> (s, m), and which of them a transfer determines."""
+    shift, known, first, second = _transfer(fit, sweeps)
+    length = fit.coefficients.scaling.length
+    each = [perturbed(s, names) for s in sweeps]
+    lever = _levers(sweeps, fit.coefficients.reference_point - np.array([shift, 0.0, 0.0]) - measured, length)
 
-    The transfer is a quadratic of the shift, I + d A + d^2 B. A fit may have swept about another point than the one that
-    its coefficients are about; how far forward the coefficients' point lies is read off the coefficients.
+    def values(deviations: Array) -> Array:
+        about = np.column_stack([f(deviations) for f in each])
+        error = {n: deviations[:, [names.index(n)]] for n in names if n in ("force", "moment")}
+        about = about + (error.get("force", 0.0) - error.get("moment", 0.0)) * (about @ lever.T)
+        dx = np.full((len(deviations), 1), shift)
+        if "reference_point" in names:
+            dx = dx + deviations[:, [names.index("reference_point")]]
+        return np.asarray(about + dx * (about @ first.T) + dx**2 * (about @ second.T))
+
+    return values, known
+
+
+def _transfer(fit: FitResult, sweeps: Sequence[Sweep]) -> tuple[float, NDArray[np.bool_], Array, Array]:
+    """How the coefficients follow from the sweeps: a shift d, m, which of them it determines, and A and B (m, m) of I + d A + d^2 B.
+
+    A fit may have swept about another point than the one that its coefficients are about; how far forward the coefficients'
+    point lies is read off the coefficients.
     """
     symbols = tuple(s.symbol for s in sweeps)
     length = fit.coefficients.scaling.length
@@ -156,32 +175,29 @@ def _of_inputs(
             shift += (final[k] - raw[k] - shift * slopes[k] - shift**2 * curves[k]) / (
                 slopes[k] + 2 * shift * curves[k]
             )
-    each = [perturbed(s, names) for s in sweeps]
-    lever = _levers(sweeps, fit.coefficients.reference_point - np.array([shift, 0.0, 0.0]) - measured, length)
+    return shift, known, first, second
 
-    def values(deviations: Array) -> Array:
-        about = np.column_stack([f(deviations) for f in each])
-        error = {n: deviations[:, [names.index(n)]] for n in names if n in ("force", "moment")}
-        about = about + (error.get("force", 0.0) - error.get("moment", 0.0)) * (about @ lever.T)
-        dx = np.full((len(deviations), 1), shift)
-        if "reference_point" in names:
-            dx = dx + deviations[:, [names.index("reference_point")]]
-        return np.asarray(about + dx * (about @ first.T) + dx**2 * (about @ second.T))
 
-    return values, known
+def moved_digits(fit: FitResult, sweeps: Sequence[Sweep]) -> Array:
+    """(m,) bounds of what the rounding of printed digits does to the coefficients, by that of the sweeps that they follow from."""
+    own = np.array([s.rounding for s in sweeps])
+    if not np.any(own):
+        return own
+    shift, _, first, second = _transfer(fit, sweeps)
+    return np.asarray(np.abs(np.eye(len(own)) + shift * first + shift**2 * second) @ own)
 
 
 def _levers(sweeps: Sequence[Sweep], shift: Array, length: float) -> Array:
-    """(m, m) moments that the coefficients of forces make by a shift (3,) from the point that the balance read about.
+    """(m, m) moments that the coefficients of forces make by shifts (m, 3) from the points that the balances read about.
 
     A calibration is of what is read: of N there and of Y, so that N + T Y here becomes (1 + m) N + (1 + f) T Y.
     """
-    transfer = force_transfer(shift) - np.eye(len(COMPONENTS))
+    transfers = [force_transfer(s) - np.eye(len(COMPONENTS)) for s in shift]
     return np.array([
         [
             transfer[COMPONENTS.index(a.component), COMPONENTS.index(b.component)] / length
             if (a.variable, a.target) == (b.variable, b.target) and {a.component, b.component} <= {*COMPONENTS} else 0.0
             for b in sweeps
         ]
-        for a in sweeps
+        for a, transfer in zip(sweeps, transfers, strict=True)
     ])  # fmt: skip
