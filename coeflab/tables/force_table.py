@@ -373,7 +373,7 @@ class ForceTable:
         nu = np.column_stack([self.motion[m] for m in MOTIONS]) @ velocity_transfer(shift).T
         transfer = force_transfer(shift)
         forces, errors, usable = dict(self.forces), dict(self.errors), dict(self.usable)
-        rounding = dict(self.rounding)
+        rounding, digits = dict(self.rounding), self.digits
         exclusions, notes = list(self.exclusions), [f"moments moved by ({', '.join(f'{s:+.6g}' for s in shift)}) m"]
         for i, component in enumerate(COMPONENTS):
             needed = [(c, transfer[i, j]) for j, c in enumerate(COMPONENTS) if transfer[i, j] != 0.0]
@@ -391,12 +391,12 @@ class ForceTable:
             forces[component] = np.asarray(sum(self.forces[c] * k for c, k in needed))
             usable[component] = np.logical_and.reduce([self.usable[c] for c, _ in needed])
             exclusions += self._passed_on(component, [c for c, _ in needed if c != component])
-            for moved, known in ((errors, self.errors), (rounding, self.digits)):
-                moved.pop(component, None)
-                if all(c in known for c, _ in needed):
-                    moved[component] = np.asarray(sum(known[c] * abs(k) for c, k in needed))
-            if component in rounding:
-                rounding[component] = np.stack([forces[component], rounding[component]])
+            errors.pop(component, None)
+            rounding.pop(component, None)
+            if all(c in self.errors for c, _ in needed):
+                errors[component] = np.asarray(sum(self.errors[c] * abs(k) for c, k in needed))
+            if coarse := [digits[c] * abs(k) for c, k in needed if c in digits]:  # others are of full precision
+                rounding[component] = np.stack([forces[component], np.sum(coarse, axis=0)])
         return replace(
             self,
             motion=dict(zip(MOTIONS, nu.T, strict=True)),

@@ -60,6 +60,8 @@ def test_units_signs_points_halves_and_densities_carry_it() -> None:
     assert table(np.round(CURVE * UNIT / 1000.0, 3), unit="kN").digits["Y"] * UNIFORM == pytest.approx(1.0)
     about = table(np.round(CURVE * UNIT, 1), np.round(CURVE * UNIT, 2)).about(np.array([0.5, 0.0, 0.0]))
     assert about.digits["N"] * UNIFORM == pytest.approx(0.01 + 1.5 * 0.1)
+    half = table(CURVE * UNIT, np.round(CURVE * UNIT, 2)).about(np.array([0.5, 0.0, 0.0]))  # Y has all digits
+    assert half.digits["N"] * UNIFORM == pytest.approx(0.01)
     salt = replace(table(np.round(CURVE * UNIT, 1)), density=np.full(len(V), 2000.0)).at_one_density()
     assert salt.digits["Y"] * UNIFORM == pytest.approx(0.05)
     assert not replace(about, forces={"Y": about.forces["Y"] + 1.0}).digits  # other numbers than were read
