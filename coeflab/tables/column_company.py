@@ -272,7 +272,7 @@ def _of_company(
         return replace(proposed(replace(column, name="alpha"), stated), certain=False, note="one angle beside lift")
     of_lift = column.unit in PURE and one.meaning is not None and one.meaning.name == "lift"
     if of_lift and {"beta", "v"} & names and not {"alpha", "w"} & names:
-        return replace(one, text="ignore", why=f"{one.why}; no column alpha")
+        return replace(one, text="ignore", why=f"{one.why}; no column alpha", note="no column alpha")
     alone = "drag" in names and not {"Y", "N", "side", "beta", "r"} & names
     if bare == "v" and alone and fits(column.unit, "speed") and known.size and known.min() >= 0.0:
         return Proposal(f"U [{column.unit}]", "its unit, over a resistance alone")

@@ -668,6 +668,19 @@ def test_the_one_angle_beside_lift_is_that_of_attack(tmp_path: Path) -> None:
         assert texts(tmp_path / "d.csv", lines(head, rows=[r.rpartition(",")[0] + ",3" for r in rows]))["angle"] == ""
 
 
+def test_a_lift_that_a_drift_sweep_leaves_out_stands_among_what_accepting_confirms(tmp_path: Path) -> None:
+    """It may be the side force of a keel: the reason was lost where the proposal was accepted."""
+    (path := tmp_path / "t.csv").write_text(
+        lines("beta [deg],CL,CD,Cn", rows=[f"{a},0.3,{cd},{cm}" for a, _, cd, cm in POLAR])
+    )
+    raw = read_raw(path, importer_of(path))
+    lift = next(o for c, o in zip(raw.columns, proposals(raw), strict=True) if c.name == "CL")
+    parts, _ = read_parts(path, "", {})
+    founds = interpreted_together(parts, {}, {})
+    shown = next(line for line in form_together(parts, founds, {}) if line.key == "CL")
+    assert (lift.text, shown.group) == ("ignore", Group.GRAVE)
+
+
 def test_a_force_that_a_person_names_leaves_no_other_force(tmp_path: Path) -> None:
     """Z and M of the hull went with a word where X of it was named."""
     rows = [f"{a},{-cd},{-cl},{cl / 9:.4f},{-cl / 5:.4f}" for a, cl, cd, _ in POLAR]
