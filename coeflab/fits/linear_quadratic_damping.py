@@ -24,7 +24,7 @@ from coeflab.core.wording import finite
 from coeflab.fits.results.fit_result import FitResult, independent, result_of
 from coeflab.fits.results.fitted_model import FittedModel, coefficient_of
 from coeflab.fits.results.lack_of_fit import residuals_in_words
-from coeflab.fits.rows.regression import Rows, all_known, model_of
+from coeflab.fits.rows.regression import Rows, all_digits, all_known, model_of
 from coeflab.law.coefficient import Coefficient, Status
 from coeflab.law.scaling import Scaling
 from coeflab.law.symbols import ANGULAR, COMPONENTS, LINEAR, MOMENTS, MOTIONS, derivative
@@ -89,11 +89,12 @@ def _rows(tables: Sequence[ForceTable], axis: str, chosen: Options) -> Rows | No
                 parts.append((t, index))
     if not parts:
         return None
+    readings = [t.forces[component][i] for t, i in parts]
     return Rows(
         x={axis: np.concatenate([t.motion[axis][i] for t, i in parts])},
-        y=np.concatenate([t.forces[component][i] for t, i in parts]),
+        y=np.concatenate(readings),
         errors=all_known([t.errors[component][i] if component in t.errors else None for t, i in parts]),
-        rounding=all_known([t.digits[component][i] if component in t.digits else None for t, i in parts]),
+        rounding=all_digits([t.digits[component][i] if component in t.digits else None for t, i in parts], readings),
         labels=tuple(t.labels[k] for t, i in parts for k in i),
         response=component,
         tables=tuple(t.name for t, _ in parts),

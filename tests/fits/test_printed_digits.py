@@ -130,3 +130,16 @@ def test_a_fixed_form_and_damping_hold_the_bound_of_a_staircase() -> None:
     bare = cf.fit(replace(digit, rounding={}), "linear_quadratic_damping", axes=["v"], terms="linear")
     assert own["Yv'"].value == bare["Yv'"].value
     assert own["Yv'"].u95 > 1.01 * bare["Yv'"].u95
+
+
+def test_a_table_of_full_precision_beside_a_rounded_one_has_no_digits_and_the_other_keeps_its_own() -> None:
+    """Fitted together they had no part of the digits at all: half of the rows have it, at half of the weight."""
+    noise = np.random.default_rng(0).normal(0.0, 1.0, (2, len(V)))
+    rounded, full = table(np.round((CURVE * UNIT + noise[0]) / 2.0) * 2.0), table(CURVE * UNIT + noise[1])
+    alone, both = (
+        cf.fit([replace(t, campaign="c", name=f"{k}") for k, t in enumerate(some)], "polynomial", variable="v", degree=1).fits[0].models[0]
+        for some in ([rounded], [rounded, full])
+    )  # fmt: skip
+    assert alone.rounding is not None
+    assert both.rounding is not None
+    assert both.rounding[-1] == pytest.approx(alone.rounding[-1] / 2.0, rel=1e-3)

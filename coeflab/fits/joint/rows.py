@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from coeflab.core.errors import InputError
 from coeflab.core.types import dataclass
 from coeflab.fits.results.set_aside import SetAside, joined
-from coeflab.fits.rows.regression import Area, Rows, all_known, collect, response, variable
+from coeflab.fits.rows.regression import Area, Rows, all_digits, all_known, collect, response, variable
 from coeflab.fits.rows.too_few import TooFewRowsError
 from coeflab.fits.statistics.least_squares import Index
 from coeflab.law.symbols import COMPONENTS
@@ -166,7 +166,7 @@ def _joined(parts: Sequence[Rows], tables: Sequence[ForceTable]) -> Rows:
         x={v: np.concatenate([p.x[v] for p in parts]) for v in parts[0].x},
         y=np.concatenate([p.y for p in parts]),
         errors=all_known([p.errors for p in parts]),
-        rounding=all_known([p.rounding for p in parts]),
+        rounding=all_digits([p.rounding for p in parts], [p.y for p in parts]),
         labels=tuple(t if alone else f"{p.campaign} {t}" for p in parts for t in p.labels),
         tables=tuple(t for p in parts for t in p.tables),
         campaign=joint_name(t.campaign for t in tables),

@@ -68,7 +68,7 @@ class Rows:
     set_aside : SetAside or None
         Printed rows that are rejected or doubtful.
     rounding : (n,) array or None
-        Standard errors of y by its last printed digit; None where a row has all digits.
+        Standard errors of y by its last printed digit, zero where it has all; None where every row has.
     """
 
     x: Mapping[str, Array]
@@ -186,8 +186,14 @@ def collect(tables: Sequence[ForceTable], variables: Sequence[str], name: str, a
         campaign=tables[0].campaign,
         body=tables[0].body,
         set_aside=joined(set_aside),
-        rounding=all_known(rounding),
+        rounding=all_digits(rounding, ys),
     )
+
+
+def all_digits(parts: Sequence[Array | None], readings: Sequence[Array]) -> Array | None:
+    """Errors by the last digit of the readings of several tables; zero for a table of full precision, None where all are."""
+    known = [np.zeros(len(y)) if p is None else p for p, y in zip(parts, readings, strict=True)]
+    return np.concatenate(known) if any(p is not None for p in parts) else None
 
 
 def all_known(parts: Sequence[Array | None]) -> Array | None:
