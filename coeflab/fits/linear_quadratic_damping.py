@@ -89,9 +89,10 @@ def _rows(tables: Sequence[ForceTable], axis: str, chosen: Options) -> Rows | No
                 parts.append((t, index))
     if not parts:
         return None
+    readings = [t.forces[component][i] for t, i in parts]
     return Rows(
         x={axis: np.concatenate([t.motion[axis][i] for t, i in parts])},
-        y=np.concatenate([t.forces[component][i] for t, i in parts]),
+        y=np.concatenate(readings),
         errors=all_known([t.errors[component][i] if component in t.errors else None for t, i in parts]),
         rounding=np.concatenate([t.digits[component][i] for t, i in parts]),
         labels=tuple(t.labels[k] for t, i in parts for k in i),

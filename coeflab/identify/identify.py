@@ -168,7 +168,8 @@ def _identified(
             continue
         balance = form(series, body, c, mine, half)
         some, balanced = _component(c, mine, balance, share, parameters, body.water, o)
-        late += _late(some, mine, balance, form([_held(s) for s in series], body, c, mine, half))
+        if not shared:  # else no interval stands
+            late += _late(some, mine, balance, form([_held(s) for s in series], body, c, mine, half))
         terms += [_of_shared_noise(t, biased) for t in some] if shared else some
         balances.append(balanced)
     return Identified(

@@ -61,7 +61,10 @@ def proposals(
     taken: dict[str, str] = {}
     turned = _turned_wind(raw.columns)
     pure = {folded(c.name) for c in raw.columns if c.unit in PURE} & {*vocabulary().coefficients, *vocabulary().several}
-    names = {named_as(c.name).partition(" ")[0] for c in raw.columns} | {folded(c.name) for c in raw.columns} & REYNOLDS
+    names = {named_as(c.name).partition(" ")[0] for c in raw.columns} | {folded(c.name) for c in raw.columns} & {
+        *REYNOLDS,
+        "side",
+    }
     of_rounding = _zeros_by_rounding(raw.columns)
     for column in (replace(c, values=np.zeros(len(c.values))) if c.name in of_rounding else c for c in raw.columns):
         if column.name in turned:
@@ -265,11 +268,11 @@ def _of_company(
             what = "a Mach number" if is_mach else "a count"
             note = f"{what} by its values beside coefficients; {one.text[0]} [{OPEN}] if it is the moment"
             return Proposal("ignore", note, note=note)
-    if bare in vocabulary().lists["angle"] and "lift" in names and not {"alpha", "beta", "v", "w"} & names:
+    if bare in vocabulary().lists["angle"] and "lift" in names and not (SIDEWAYS | {"alpha", "w", "N"}) & names:
         return replace(proposed(replace(column, name="alpha"), stated), certain=False, note="one angle beside lift")
     of_lift = column.unit in PURE and one.meaning is not None and one.meaning.name == "lift"
     if of_lift and {"beta", "v"} & names and not {"alpha", "w"} & names:
-        return replace(one, text="ignore", why=f"{one.why}; no column alpha")
+        return replace(one, text="ignore", why=f"{one.why}; no column alpha", note="no column alpha")
     alone = "drag" in names and not {"Y", "N", "side", "beta", "r"} & names
     if bare == "v" and alone and fits(column.unit, "speed") and known.size and known.min() >= 0.0:
         return Proposal(f"U [{column.unit}]", "its unit, over a resistance alone")
@@ -309,8 +312,8 @@ def _of_company(
 def without_strangers(raw: RawTable, out: list[Proposal], confirmed: bool = False) -> list[Proposal]:
     """Of many columns that neither name nor unit says anything of, those that cannot be a setting are of no use.
 
-    Nothing is left out where no force or no setting is known without them. Where a person said which columns are the forces, others
-    with a word of a force in their names are none, such as CL_XFOIL and Delta_CL.
+    Nothing is left out where no force or no setting is known without them. Where a person said which column is a force, others with
+    a word of the same force in their names are none, such as CL_XFOIL and Delta_CL; My_hull beside Fx_hull may be one.
     """
     strange = [
         i for i, one in enumerate(out)
@@ -319,11 +322,13 @@ def without_strangers(raw: RawTable, out: list[Proposal], confirmed: bool = Fals
     roles, many = {one.role for one in out}, len(strange) > MOST_ASKED
     if "force" in roles and roles & VARIED:
         named = [i for i, c in enumerate(raw.columns) if not _UNNAMED.fullmatch(c.name)]
-        last = max(named, default=len(raw.columns)) * (raw.header_line > 0)  # one before it may be a setting
+        last = max(named, default=-1) if raw.header_line > 0 else -1  # one before it may be a setting
         left = {i: "a column without name" for i in strange if named and i not in named and i > last}
         forced = {i: raw.columns[i].name for i in strange if _has_a_force(raw.columns[i].name)}
         left |= {i: "spread of a force" for i, name in forced.items() if name.rpartition("_")[2] in _SPREAD}
-        left |= dict.fromkeys(forced if confirmed else (), "another force is named")
+        given = {one.meaning.name for one in out if one.meaning is not None and one.role == "force"}
+        others = [i for i, name in forced.items() if confirmed and _forces_in(name) <= given]
+        left |= dict.fromkeys(others, "another force is named")
         out = [replace(one, text="ignore", note=left[i]) if i in left else one for i, one in enumerate(out)]
         strange = [i for i in strange if i not in left]
     if len(strange) <= FEW_STRANGE or "force" not in roles or roles.isdisjoint(VARIED | {"speed"} if many else VARIED):
@@ -370,7 +375,13 @@ def _has_a_force(name: str) -> bool:
     """Whether a word of a name is that of a force, or its last ones are of what no fit uses: Delta_CL, c_M_LE, XFOIL_CDp."""
     words = re.split(r"[_\W]+", re.sub(r"^c_", "c", name.strip()))
     tails = {named_as(" ".join(words[k:])) for k in range(len(words))}
-    return "ignore" in tails or any(len(word) > 1 and named_as(word) in FORCES for word in words)
+    return "ignore" in tails or bool(_forces_in(name))
+
+
+def _forces_in(name: str) -> set[str]:
+    """Forces that words of a name are of."""
+    words = re.split(r"[_\W]+", re.sub(r"^c_", "c", name.strip()))
+    return {force for word in words if len(word) > 1 and (force := named_as(word)) in FORCES}
 
 
 def _like_a_setting(values: Array, settings: Sequence[Array]) -> bool:

@@ -60,6 +60,8 @@ def test_units_signs_points_halves_and_densities_carry_it() -> None:
     assert table(np.round(CURVE * UNIT / 1000.0, 3), unit="kN").digits["Y"] * UNIFORM == pytest.approx(1.0)
     about = table(np.round(CURVE * UNIT, 1), np.round(CURVE * UNIT, 2)).about(np.array([0.5, 0.0, 0.0]))
     assert about.digits["N"] * UNIFORM == pytest.approx(0.01 + 1.5 * 0.1)
+    half = table(CURVE * UNIT, np.round(CURVE * UNIT, 2)).about(np.array([0.5, 0.0, 0.0]))  # Y has all digits
+    assert half.digits["N"] * UNIFORM == pytest.approx(0.01)
     salt = replace(table(np.round(CURVE * UNIT, 1)), density=np.full(len(V), 2000.0)).at_one_density()
     assert salt.digits["Y"] * UNIFORM == pytest.approx(0.05)
     assert not np.any(replace(about, forces={"Y": about.forces["Y"] + 1.0}).digits["Y"])  # other numbers than were read
@@ -71,7 +73,7 @@ def test_a_moved_moment_keeps_the_digits_of_one_column_where_the_other_has_all()
     whole, coarse = CURVE * UNIT, np.round(CURVE * UNIT, 1)
     assert table(whole, np.round(whole)).about(there).digits["N"] * UNIFORM == pytest.approx(1.0)
     assert table(coarse, whole).about(there).digits["N"] * UNIFORM == pytest.approx(1.5 * 0.1)
-    assert "N" not in table(whole, whole).about(there).digits
+    assert not np.any(table(whole, whole).about(there).digits["N"])
     assert table(0.0 * whole, np.round(whole)).about(there).digits["N"] * UNIFORM == pytest.approx(1.0)
 
 
@@ -198,3 +200,16 @@ def test_a_moment_and_a_second_table_keep_the_digit_of_the_one_that_has_it() -> 
     assert felt[2] is None
     assert felt[0] is not None
     assert felt[0] == pytest.approx(felt[1])
+
+
+def test_a_table_of_full_precision_beside_a_rounded_one_has_no_digits_and_the_other_keeps_its_own() -> None:
+    """Fitted together they had no part of the digits at all: half of the rows have it, at half of the weight."""
+    noise = np.random.default_rng(0).normal(0.0, 1.0, (2, len(V)))
+    rounded, full = table(np.round((CURVE * UNIT + noise[0]) / 2.0) * 2.0), table(CURVE * UNIT + noise[1])
+    alone, both = (
+        cf.fit([replace(t, campaign="c", name=f"{k}") for k, t in enumerate(some)], "polynomial", variable="v", degree=1).fits[0].models[0]
+        for some in ([rounded], [rounded, full])
+    )  # fmt: skip
+    assert alone.rounding is not None
+    assert both.rounding is not None
+    assert both.rounding[-1] == pytest.approx(alone.rounding[-1] / 2.0, rel=1e-3)

@@ -663,6 +663,45 @@ def test_the_one_angle_beside_lift_is_that_of_attack(tmp_path: Path) -> None:
         lines("angle_deg,beta_deg,lift_N,drag_N", rows=[r.replace(",", ",3,", 1).rpartition(",")[0] for r in rows]),
     )
     assert beside["angle"] == ""
+    for across in ("side_N", "r [rad/s]"):
+        head = f"angle_deg,lift_N,drag_N,{across}"
+        assert texts(tmp_path / "d.csv", lines(head, rows=[r.rpartition(",")[0] + ",3" for r in rows]))["angle"] == ""
+
+
+def test_a_lift_that_a_drift_sweep_leaves_out_stands_among_what_accepting_confirms(tmp_path: Path) -> None:
+    """It may be the side force of a keel: the reason was lost where the proposal was accepted."""
+    (path := tmp_path / "t.csv").write_text(
+        lines("beta [deg],CL,CD,Cn", rows=[f"{a},0.3,{cd},{cm}" for a, _, cd, cm in POLAR])
+    )
+    raw = read_raw(path, importer_of(path))
+    lift = next(o for c, o in zip(raw.columns, proposals(raw), strict=True) if c.name == "CL")
+    parts, _ = read_parts(path, "", {})
+    founds = interpreted_together(parts, {}, {})
+    shown = next(line for line in form_together(parts, founds, {}) if line.key == "CL")
+    assert (lift.text, shown.group) == ("ignore", Group.GRAVE)
+
+
+def test_a_force_that_a_person_names_leaves_no_other_force(tmp_path: Path) -> None:
+    """Z and M of the hull went with a word where X of it was named."""
+    rows = [f"{a},{-cd},{-cl},{cl / 9:.4f},{-cl / 5:.4f}" for a, cl, cd, _ in POLAR]
+    head = "alpha [deg],Fx_hull [N],Fz_hull [N],My_hull [N m],Fx_sail [N]"
+    (path := tmp_path / "t.csv").write_text(lines(head, rows=rows))
+    parts, _ = read_parts(path, "", {})
+    (found,) = interpreted_together(parts, {"Fx_hull": read_column_map("X [N]")}, {})
+    offers = {c.name: o.text for c, o in zip(parts[0].raw.columns, found.proposals, strict=True)}
+    assert {n: offers[n] for n in ("Fz_hull", "My_hull", "Fx_sail")} == {
+        "Fz_hull": "",
+        "My_hull": "",
+        "Fx_sail": "ignore",
+    }
+
+
+def test_a_dash_leaves_the_first_column_too(tmp_path: Path) -> None:
+    rows = [f"{7.3 + (i * 7) % 5},{a},{cl},{cd}" for i, (a, cl, cd, _) in enumerate(POLAR)]
+    (path := tmp_path / "t.csv").write_text("\n".join(rows) + "\n")
+    parts, _ = read_parts(path, "", {"columns": "-, alpha [deg], CL, CD"})
+    (found,) = interpreted_together(parts, {}, {})
+    assert found.proposals[0].text == "ignore"
 
 
 def test_forces_that_a_person_names_leave_those_of_other_sources(tmp_path: Path) -> None:

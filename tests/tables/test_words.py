@@ -397,7 +397,7 @@ def test_a_sign_in_words_that_the_numbers_contradict_is_open() -> None:
             RawColumn("r", "deg/s", b[::-1] * 0 + np.array([1.0, 2, 0, 1, 2])),
             RawColumn("N", "N*m", -b),
         ] * bool(rate)
-        raw = RawTable(Path("t.csv"), tuple(columns), np.arange(5), stated=said(*filter(None, (line, rate))))
+        raw = RawTable(Path("t.csv"), tuple(columns), 0, np.arange(5), stated=said(*filter(None, (line, rate))))
         found = interpreted(raw, {}, {"axes.frame": Setting("FRD", "confirmed")}, accept=True)
         return {q.key: q for q in found.questions}, [d.why for d in found.doubts]
 
@@ -472,7 +472,8 @@ def test_a_german_overall_length_and_primes_by_the_volume() -> None:
 
 @pytest.mark.parametrize(
     ("behind", "point"),
-    [("m", "-2, -0.1, -0.3"), ("m, in FRD", "-2, 0.1, 0.3"), ("m (FLU)", "-2, -0.1, -0.3"), ("m in the FRD frame", "-2, 0.1, 0.3")],
+    [("m", "-2, -0.1, -0.3"), ("m, in FRD", "-2, 0.1, 0.3"), ("m (FLU)", "-2, -0.1, -0.3"), ("m in the FRD frame", "-2, 0.1, 0.3"),
+     ("m in the CFD model", "-2, -0.1, -0.3"), ("m in CFD axes", "2, 0.1, -0.3")],
 )  # fmt: skip
 def test_a_point_with_a_frame_of_its_own_is_read_in_that(behind: str, point: str) -> None:
     """The place of a load cell in FRD over a table in FLU was turned: 0.6 m below its place, and on the other side."""
@@ -482,5 +483,10 @@ def test_a_point_with_a_frame_of_its_own_is_read_in_that(behind: str, point: str
     assert "FRD" not in behind or "FRD" in one.why
 
 
-def test_coordinates_of_a_point_have_their_unit() -> None:
-    assert said("moments about the balance at (-2000 100 300) mm")["axes.reference_point"].value == (-2.0, 0.1, 0.3)
+@pytest.mark.parametrize("unit", ["mm", "[mm]", "in mm", "(mm), in FRD"])
+def test_coordinates_of_a_point_have_their_unit(unit: str) -> None:
+    assert said(f"moments about the balance at (-2000 100 300) {unit}")["axes.reference_point"].value == (
+        -2.0,
+        0.1,
+        0.3,
+    )

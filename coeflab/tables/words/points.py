@@ -35,11 +35,11 @@ _MOMENTS_AT = re.compile(
     )
 )
 _TRIPLE = re.compile(r"[(\[]\s*" + r"[\s,;]+".join([r"([-+]?(?:\d[\d.]*|\.\d+)(?:[eE][-+]?\d+)?)"] * 3) + r"\s*[)\]]")
-# Unit and frame of coordinates, behind them: "(-2.0, 0.1, 0.3) m, in FRD".
+# Unit and frame of coordinates, behind them: "(-2.0, 0.1, 0.3) m, in FRD", "(-2000, 100, 300) [mm]"; "in the CFD model" is no frame.
 _TRIPLE_IN = re.compile(
-    r"(?i)\s*(?P<unit>mm|cm|m|ft|in(?!\s))?(?![^\W_])"
+    r"(?i)\s*(?:in\s+(?=[mcf]))?[\[(]?(?P<unit>mm|cm|m|ft|in(?!\s))?(?![^\W_])\]?"
     + atomic(r"[\s,;:(\[]|(?:in|of|im|en|the|body|axes|frame|coordinates)(?![^\W_])", "between")
-    + r"(?P<frame>FRD|FLU|CFD)?(?![^\W_])"
+    + r"(?P<frame>FRD|FLU|CFD(?!\s+(?!axes|frame|coord)\w))?(?![^\W_])"
 )
 _AT = re.compile(
     r"(?i)(?P<share>x\s*/\s*l\w{0,2}\s*[=:]?\s*)?(?P<number>[-+\u2212]?\d[\d.,]*)\s*[\[(]?(?P<unit>mm|cm|m|ft|in|%\s*(?:of\s+|von\s+|de\s+)?(?:the\s+|der\s+|la\s+)?l(?:ength|[äa]e?nge|ongueur|oa|pp|bp)?|l(?:oa|pp|bp)?)?"
