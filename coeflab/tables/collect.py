@@ -165,6 +165,8 @@ def _collected(
     matched: set[str], again: int,
 ) -> Collected:  # fmt: skip
     """Runs of one table."""
+    if all(s.status is Convergence.UNREADABLE for s in summaries):
+        raise input_error("tables.unreadable_runs", path, count=len(summaries), reasons=_with_reasons(summaries))
     conditions = joined({s.name: of_files(s.stated_conditions) for s in summaries}, pattern, listed_runs)
     conditions = _with_straight_runs(conditions)
     summaries = [replace(s, conditions=conditions[s.name]) for s in summaries]
@@ -289,7 +291,10 @@ def _lacks_forces(run: RunSummary) -> bool:
 
 
 def _with_reasons(runs: Sequence[RunSummary]) -> str:
-    return named([f"{s.name} ({s.why})" if s.why else s.name for s in runs])
+    reasons: dict[str, list[str]] = {}
+    for s in runs:
+        reasons.setdefault(s.why, []).append(s.name)
+    return named([named(names) + f" ({why})" * bool(why) for why, names in reasons.items()])
 
 
 def _holes(rows: Sequence[RunSummary], known: Sequence[str]) -> tuple[str, ...]:
