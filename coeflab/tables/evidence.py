@@ -28,10 +28,8 @@ OTHER_PLANE = {"pitch": "yaw", "yaw": "pitch"}
 STILL = 0.1  # of the span of Y or N: a span of Z or M that is none
 SLENDER = "a slender body has"  # in what infers a sign from the force that should follow from it
 NEAR = np.radians(15.0)  # of an angle of the flow: beyond it a body may stall, and nothing shows its sign
-AS_DRAG = (
-    0.5,
-    1.5,
-)  # growth of X over an angle, of Y sin(beta) or Z sin(alpha): that of drag along the flow is 1 plus little
+# Growth of X over an angle, of Y sin(beta) or Z sin(alpha): that of drag along the flow is 1 plus little.
+AS_DRAG = (0.5, 1.5)
 CLEAR = 0.8  # correlation beyond which a slope has a sign
 
 

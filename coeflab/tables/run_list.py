@@ -15,7 +15,7 @@ from coeflab.core.errors import InputError, UnitsError, shown, together
 from coeflab.core.text.delimited import read_cells
 from coeflab.core.text.toml import read_toml
 from coeflab.core.texts import input_error
-from coeflab.core.types import brief
+from coeflab.core.types import Array, brief
 from coeflab.core.units import SI, Header, factor, fits
 from coeflab.core.wording import listed, repeated
 from coeflab.law.symbols import LINEAR
@@ -270,13 +270,18 @@ def turned_in_one_flow(conditions: Mapping[str, Mapping[str, Condition]]) -> Con
     """
     rows = [c for c in conditions.values() if not {"alpha", "beta"}.isdisjoint(c)]
     flows = [[c.get(n) or c.get(BESIDE.format(n)) for n in LINEAR] for c in rows]
-    velocity = np.array([[np.nan if one is None else one.value for one in flow] for flow in flows], dtype=float)
-    angles = np.array([[c[a].value if a in c else 0.0 for a in ("alpha", "beta")] for c in rows], dtype=float)
-    if len(rows) < 2 or np.max(np.ptp(angles, axis=0)) <= CLOSE_ANGLE:
+    velocity, angles = map(_numbers, (flows, [[c.get("alpha"), c.get("beta")] for c in rows]))
+    if len(rows) < 2 or np.max(np.ptp(np.nan_to_num(angles), axis=0)) <= CLOSE_ANGLE:
         return None
     across = np.hypot(velocity[:, 1], velocity[:, 2])
     along = np.all(across <= CLOSE * np.abs(velocity[:, 0])) and abs(np.sign(velocity[:, 0]).sum()) == len(rows)
     return flows[0][0] if along else None
+
+
+def _numbers(rows: Sequence[Sequence[Condition | None]]) -> Array:
+    """Values of settings, NaN for what is missing or a text."""
+    known = [[np.nan if one is None or isinstance(one.value, str) else one.value for one in row] for row in rows]
+    return np.array(known, dtype=float)
 
 
 def _other_incidence(run: str, found: dict[str, Condition], turned: bool) -> list[InputError]:

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import re
 import shutil
 from pathlib import Path
 
 import numpy as np
 import pytest
 
+from coeflab.core.errors import InputError
 from tests.cli.conftest import flat
 from tests.cli.test_import import invoke, left_open, refused, table_of, without_slopes
 from tests.cli.test_import_half import HEAD, case
@@ -60,6 +62,21 @@ def test_forces_along_the_body_are_taken_once_somebody_says_so(turned: Path, tmp
     done = invoke("import", turned, "--out", tmp_path / "out", *KNOWN, "--map", "Fx=X [N]")
     assert done.exit_code == 0, done.output
     assert set(table_of(tmp_path / "out").forces) == set("XYZKMN")
+
+
+def test_a_folder_in_place_is_refused_until_its_columns_say_the_axes(turned: Path, tmp_path: Path) -> None:
+    invoke("import", turned, "--out", tmp_path / "out", *KNOWN, *ALONG_FLOW)
+    text = (tmp_path / "out/campaign.toml").read_text()
+    sections = "".join(re.findall(r"^\[(?:axes|scaling|conditions|source)\]\n(?:[^\[\n].*\n)+", text, re.MULTILINE))
+    head = '[campaign]\ntitle = "T"\nbody = "b"\nimporter = "openfoam"\n[importer]\nnames = "b{beta:deg}"\n'
+    said = '[columns]\nFx = "drag [N]"\nFy = "side [N]"\nFz = "ignore"\nMx = "ignore"\nMy = "ignore"\n'
+    for columns in ("", said):
+        (tmp_path / "campaign.toml").write_text(f'{head}{columns}{sections}[[table]]\nfile = "runs"\n')
+        if columns:
+            np.testing.assert_allclose(table_of(tmp_path).forces["Y"], [body(d)[1] for d in DEGREES], atol=1e-9)
+        else:
+            with pytest.raises(InputError, match="the body is turned in the mesh"):
+                table_of(tmp_path)
 
 
 def test_a_flow_that_turns_with_the_angle_asks_nothing(tmp_path: Path) -> None:
