@@ -194,7 +194,7 @@ def _doubtful(doubt: Doubt) -> Line:
     turns = f"; {name} > 0 then {doubt.turns}" * bool(doubt.turns)
     about = f'Column "{name}": {doubt.why}. {turned} turns its sign, {selected} keeps it{turns}.'
     if doubt.instead is not None:
-        about = f'Column "{name}": {doubt.why}. {turned} along the flow, {selected} along the body.'
+        about = f'Column "{name}": {turned} or {selected}: {doubt.why}.'
     if doubt.another:
         about = f'Column "{name}": {doubt.why}. {turned} {doubt.turns} where {name} > 0, {selected} the other way.'
     return Line(

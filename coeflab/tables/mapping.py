@@ -261,14 +261,15 @@ def along_the_flow(
     given = {c: meaning_of(column, mapping, raw.columns) for c, column in of.items()}
     if flow is None or ((x := given.get("X")) is not None and x.name == "X"):
         return
-    turned = [a for a in ("alpha", "beta") if (c := raw.meaning(a)) is not None and np.any(c.values)]
+    turned = "".join(a for a in ("alpha", "beta") if (angle := raw.meaning(a)) is not None and np.any(angle.values))
     starboard, up = (1.0, 1.0) if frame is None else (frame.rotation[1][1], -frame.rotation[2][2])
-    wind = {"X": ("drag", -float(flow.value)), "Y": ("side", starboard), "Z": ("lift", up)}
-    still = {("beta",): "ZKM", ("alpha",): "YKN"}.get(tuple(turned), "KMN")
-    for c, column in of.items():
-        if given[c] is None and (c in wind or c in still):
-            name, sign = ("ignore", 1.0) if c in still else wind[c]
-            plain = ColumnMap(c, column.unit)
+    along = -float(str(flow.value))
+    wind: dict[str, tuple[str, float]] = {"X": ("drag", along), "Y": ("side", starboard), "Z": ("lift", up)}
+    still = {"beta": "ZKM", "alpha": "YKN"}.get(turned, "KMN")
+    for component, column in of.items():
+        if given[component] is None and (component in wind or component in still):
+            name, sign = ("ignore", 1.0) if component in still else wind[component]
+            plain = ColumnMap(component, column.unit)
             yield column, replace(plain, name=name, negative=sign < 0.0, unit=column.unit * (name != "ignore")), plain
 
 
@@ -528,10 +529,10 @@ def mapped_table(raw: RawTable, campaign: Campaign, table: TableDeclaration) -> 
     InputError
         All that is wrong with the columns; then a cell that cannot be, or what campaign.toml leaves open.
     """
-    declared = declared_mapping(campaign, table)
-    for column, flow, body in along_the_flow(raw, declared, campaign.axes):
+    mapping = declared_mapping(campaign, table)
+    for column, flow, body in along_the_flow(raw, mapping, campaign.axes):
         raise fault("tables.turned_in_one_flow", raw, column, flow=flow, body=body, place=raw.stated[ONE_FLOW].place)
-    known = assigned(raw, declared, len(campaign.tables) == 1)
+    known = assigned(raw, mapping, len(campaign.tables) == 1)
     if why := another_density(raw, known, campaign.conditions.density):
         raise why
     columns = _columns(raw, known, campaign)
