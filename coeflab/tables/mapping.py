@@ -530,8 +530,8 @@ def mapped_table(raw: RawTable, campaign: Campaign, table: TableDeclaration) -> 
         All that is wrong with the columns; then a cell that cannot be, or what campaign.toml leaves open.
     """
     mapping = declared_mapping(campaign, table)
-    for column, flow, body in along_the_flow(raw, mapping, campaign.axes):
-        raise fault("tables.turned_in_one_flow", raw, column, flow=flow, body=body, place=raw.stated[ONE_FLOW].place)
+    for column, flow, own in along_the_flow(raw, mapping, campaign.axes):
+        raise fault("tables.turned_in_one_flow", raw, column, flow=flow, body=own, place=raw.stated[ONE_FLOW].place)
     known = assigned(raw, mapping, len(campaign.tables) == 1)
     if why := another_density(raw, known, campaign.conditions.density):
         raise why
