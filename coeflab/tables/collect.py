@@ -21,8 +21,8 @@ from coeflab.core.units import SI
 from coeflab.law.symbols import ANGULAR, LINEAR
 from coeflab.tables.conditions import SETTINGS, Condition, NamePattern, name_pattern, named, of_files
 from coeflab.tables.histories import ORDER, Convergence
-from coeflab.tables.raw_table import NO_FORCES, RawTable
-from coeflab.tables.run_list import RunList, joined, read_run_list, required
+from coeflab.tables.raw_table import NO_FORCES, ONE_FLOW, RawTable, Stated
+from coeflab.tables.run_list import RunList, joined, read_run_list, required, turned_in_one_flow
 from coeflab.tables.run_summary import RunSummary
 from coeflab.tables.runs import Progress, find_runs, read_all
 from coeflab.tables.runs_table import ALL, runs_shown, table_of_runs
@@ -165,6 +165,8 @@ def _collected(
     matched: set[str], again: int,
 ) -> Collected:  # fmt: skip
     """Runs of one table."""
+    if all(s.status is Convergence.UNREADABLE for s in summaries):
+        raise input_error("tables.unreadable_runs", path, count=len(summaries), reasons=_with_reasons(summaries))
     conditions = joined({s.name: of_files(s.stated_conditions) for s in summaries}, pattern, listed_runs)
     conditions = _with_straight_runs(conditions)
     summaries = [replace(s, conditions=conditions[s.name]) for s in summaries]
@@ -190,6 +192,8 @@ def _collected(
     rows, summaries = [used.get(s.name, s) for s in rows], [used.get(s.name, s) for s in summaries]
     remarks = _remarks(summaries, rows, missing, duplicates, copies, grids)
     table = table_of_runs(path, chosen, rows, known, doubtful, remarks)
+    if flow := turned_in_one_flow(conditions):
+        table = replace(table, stated={**table.stated, ONE_FLOW: Stated(flow.value, flow.origins[0])})
     return Collected(table, tuple(summaries), missing, duplicates, chosen, again)
 
 
@@ -289,7 +293,10 @@ def _lacks_forces(run: RunSummary) -> bool:
 
 
 def _with_reasons(runs: Sequence[RunSummary]) -> str:
-    return named([f"{s.name} ({s.why})" if s.why else s.name for s in runs])
+    reasons: dict[str, list[str]] = {}
+    for s in runs:
+        reasons.setdefault(s.why, []).append(s.name)
+    return named([named(names) + f" ({why})" * bool(why) for why, names in reasons.items()])
 
 
 def _holes(rows: Sequence[RunSummary], known: Sequence[str]) -> tuple[str, ...]:

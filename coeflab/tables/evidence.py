@@ -3,18 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from coeflab.core.axes import Axes, parse_axes
-from coeflab.core.texts import words
+from coeflab.core.texts import text_of, words
 from coeflab.core.types import Array
 from coeflab.law.symbols import ANGULAR, COMPONENTS, LINEAR, MOMENTS
 from coeflab.tables.campaign import CUTS
 from coeflab.tables.column_map import ColumnMap, unturned
 from coeflab.tables.force_table import AT_REST
-from coeflab.tables.half_bodies import Along, forces_across, judged
+from coeflab.tables.half_bodies import FEWEST, Along, forces_across, judged
 from coeflab.tables.mapping import Assigned
 from coeflab.tables.raw_table import HALF_MODEL
 
@@ -28,6 +28,8 @@ OTHER_PLANE = {"pitch": "yaw", "yaw": "pitch"}
 STILL = 0.1  # of the span of Y or N: a span of Z or M that is none
 SLENDER = "a slender body has"  # in what infers a sign from the force that should follow from it
 NEAR = np.radians(15.0)  # of an angle of the flow: beyond it a body may stall, and nothing shows its sign
+# Growth of X over an angle, of Y sin(beta) or Z sin(alpha): that of drag along the flow is 1 plus little.
+AS_DRAG = (0.5, 1.5)
 CLEAR = 0.8  # correlation beyond which a slope has a sign
 
 
@@ -189,6 +191,7 @@ def evidence(columns: Sequence[Assigned], frame: Axes | None = None) -> tuple[Ev
         out += [Evidence(turn if up else f"r {TURN}")]
     out += _moment_of_the_other_plane(data, frame) if frame else []
     out += _levers(data, {one.meaning.name: one.meaning for one in columns}, frame)
+    out += _along_the_flow(columns, data, frame)
     if "drag" in data and np.any(ok := np.isfinite(data["drag"])) and np.all(data["drag"][ok] < 0.0):
         out.append(Evidence("drag is below zero in every row: that is thrust, or -drag is meant", warns=True))
     x = _frd(data, "X", frame) if frame else data.get("X")
@@ -200,6 +203,47 @@ def evidence(columns: Sequence[Assigned], frame: Axes | None = None) -> tuple[Ev
         out.append(Evidence(f"X is {'positive' if x[0] > 0 else 'negative'} throughout: drag, if x points "
                             f"{'aft' if x[0] > 0 else 'forward'}"))  # fmt: skip
     return tuple(out)
+
+
+def _along_the_flow(columns: Sequence[Assigned], data: Mapping[str, Array], frame: Axes | None) -> Iterator[Evidence]:
+    """X that grows over an angle as drag along the flow does, D = -X cos(beta) - Y sin(beta) of a body turned in it."""
+    axes = frame or parse_axes("FRD")
+    for angle, component, wind, idle in (("beta", "Y", "side", "ZKM"), ("alpha", "Z", "lift", "YKN")):
+        x, y = (frd_column(columns, c, axes) for c in ("X", component))
+        if (
+            x is None
+            or y is None
+            or angle not in data
+            or x.meaning.pure != y.meaning.pure
+            or x.meaning.area != y.meaning.area
+        ):
+            continue
+        others = [
+            data[s] for s in ("alpha", "beta", *LINEAR[1:], *ANGULAR, "R", "dr", "ds", "db") if s in data and s != angle
+        ]
+        cross, along = y.values * np.sin(data[angle]), x.values
+        ok = np.isfinite(cross) & np.isfinite(along) & (np.abs(data[angle]) <= NEAR)
+        ok &= np.all([np.nan_to_num(o) == 0.0 for o in others], axis=0) if others else True
+        if np.unique(data[angle][ok]).size < FEWEST:
+            continue
+        dy, dx = cross[ok] - np.mean(cross[ok]), along[ok] - np.mean(along[ok])
+        grown = float(dx @ dy) * np.sign(np.mean(cross[ok])) * np.sign(np.mean(along[ok]))
+        share = grown / max(float(dy @ dy), 1e-300)
+        if AS_DRAG[0] < share < AS_DRAG[1] and grown > CLEAR * np.sqrt(float(dx @ dx) * float(dy @ dy)):
+            turned_by = (
+                float(axes.rotation[1][1] if wind == "side" else -axes.rotation[2][2]) * (-1.0) ** y.meaning.negative
+            )
+            signs = (float(np.mean(x.column.values[ok])) < 0.0, turned_by < 0.0)
+            maps = [
+                f'--map "{c.column.name}={replace(c.meaning, name=n, negative=negative)}"'
+                for c, n, negative in zip((x, y), ("drag", wind), signs, strict=True)
+            ]
+            still = [c.column.name for i in idle if (c := frd_column(columns, i, axes)) is not None]
+            yield Evidence(
+                text_of("signs.along_flow", x=x.column.name, y=y.column.name, angle=angle, share=share, maps=" ".join(maps),
+                        idle=", ".join(still) or "-"),
+                warns=True,
+            )  # fmt: skip
 
 
 def across_planes(

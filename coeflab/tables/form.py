@@ -188,9 +188,13 @@ def _covered(offer: Proposal) -> str:
 
 def _doubtful(doubt: Doubt) -> Line:
     turned, selected = (str(replace(doubt.meaning, negative=negative)) for negative in (True, False))
+    if doubt.instead is not None:
+        turned = str(doubt.instead)
     name = doubt.column.name
     turns = f"; {name} > 0 then {doubt.turns}" * bool(doubt.turns)
     about = f'Column "{name}": {doubt.why}. {turned} turns its sign, {selected} keeps it{turns}.'
+    if doubt.instead is not None:
+        about = f'Column "{name}": {turned} or {selected}: {doubt.why}.'
     if doubt.another:
         about = f'Column "{name}": {doubt.why}. {turned} {doubt.turns} where {name} > 0, {selected} the other way.'
     return Line(

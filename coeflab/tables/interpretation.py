@@ -11,7 +11,7 @@ import numpy as np
 
 from coeflab.core.axes import Axes
 from coeflab.core.errors import InputError, shown
-from coeflab.core.texts import input_error
+from coeflab.core.texts import input_error, text_of
 from coeflab.core.units import SI, quantity
 from coeflab.core.wording import listed
 from coeflab.law.symbols import LINEAR
@@ -27,6 +27,7 @@ from coeflab.tables.mapping import (
     NO_FORCE,
     SETTINGS,
     Assigned,
+    along_the_flow,
     another_density,
     another_viscosity,
     assigned,
@@ -39,7 +40,7 @@ from coeflab.tables.mapping import (
 )
 from coeflab.tables.proposals import AREA, Proposal, Reason, coefficient_by_sizes, lacks_sizes, may_be_force, taken_as
 from coeflab.tables.questions import Question, known_sizes, questions
-from coeflab.tables.raw_table import HALF_MODEL, RawColumn, RawTable
+from coeflab.tables.raw_table import HALF_MODEL, ONE_FLOW, RawColumn, RawTable
 from coeflab.tables.settings import EXTRA, OF_ARMS, SYMMETRY, VISCOSITY, Setting, Settings, frame_of, read_setting
 from coeflab.tables.settings_in_files import against_words, overruled
 from coeflab.tables.time_record import IDENTIFY, clock, record_over_time
@@ -63,6 +64,8 @@ class Doubt:
         What a positive number of the column does if it is what is said; empty while the axes are not known.
     another : bool
         The axis is contradicted, not the sign.
+    instead : ColumnMap or None
+        What the column is where its force counts along the flow, not along the body; None where that is no question.
     """
 
     column: RawColumn
@@ -70,6 +73,7 @@ class Doubt:
     why: str
     turns: str = ""
     another: bool = False
+    instead: ColumnMap | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -190,7 +194,10 @@ def interpreted(
     ]  # fmt: skip
     yet = tuple(q for q in asked if q.key not in settings)
     about = {q.key: q.asks for q in asked}
-    doubts += _turned_by_words(raw, columns, frame, settled, doubts)
+    doubts += [
+        *_turned_by_words(raw, columns, frame, settled, doubts),
+        *_in_one_flow(raw, {n: one for n, one in meanings.items() if n in settled}, frame),
+    ]
     more, vain = _in_vain(raw, mapping, still)
     shows, complaints = (*shows, *more), (*complaints, *vain)
     return Interpretation(
@@ -448,6 +455,12 @@ def _turned_by_words(
         turn = turn_of(one.meaning, frame)  # type: ignore[arg-type]
         if turn.startswith("turns") and str(words.value) not in turn and one.column not in [d.column for d in doubts]:  # type: ignore[union-attr]
             yield Doubt(one.column, one.meaning, f"{words.place}, but by the axes r > 0 {turn}", turn)  # type: ignore[union-attr]
+
+
+def _in_one_flow(raw: RawTable, by_person: Mapping[str, ColumnMap], frame: Axes | None) -> Iterator[Doubt]:
+    """Forces of a body that is turned in the mesh: along the flow, or along the body."""
+    for column, flow, body in along_the_flow(raw, by_person, frame):
+        yield Doubt(column, body, text_of("foam.turned_mesh", place=raw.stated[ONE_FLOW].place), instead=flow)
 
 
 def _doubt(one: Assigned, shows: Evidence, frame: Axes | None) -> Doubt:

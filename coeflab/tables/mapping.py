@@ -11,12 +11,14 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from coeflab.core.axes import Axes
 from coeflab.core.errors import InputError, UnitsError, shown, together
 from coeflab.core.limits import LARGEST_NUMBER
 from coeflab.core.texts import input_error
 from coeflab.core.types import Array, brief
 from coeflab.core.units import factor, fits
 from coeflab.core.wording import Verbatim, listed
+from coeflab.law.symbols import COMPONENTS
 from coeflab.tables.campaign import Campaign, TableDeclaration
 from coeflab.tables.column_map import (
     EXAMPLES,
@@ -34,7 +36,7 @@ from coeflab.tables.dialect import Marks
 from coeflab.tables.force_table import ForceTable
 from coeflab.tables.importers import IMPORTERS
 from coeflab.tables.levels import APART, levels_of
-from coeflab.tables.raw_table import RawColumn, RawTable
+from coeflab.tables.raw_table import ONE_FLOW, RawColumn, RawTable
 from coeflab.tables.to_frd import BLANK, SAME_DENSITY, force_table, speed_of_rows
 from coeflab.tables.vocabulary import folded, vocabulary
 from coeflab.tables.words.axes import BODY_AXES
@@ -240,6 +242,35 @@ def with_unit(raw: RawTable, column: RawColumn, meaning: ColumnMap) -> Assigned:
             "tables.two_units", raw, column, unit=column.unit, meant=meaning.unit, plain=replace(meaning, unit="")
         )
     return Assigned(column, replace(meaning, unit=unit), sign * size / (meaning.ship**0.5 or 1.0))
+
+
+def along_the_flow(
+    raw: RawTable, mapping: Mapping[str, ColumnMap], frame: Axes | None
+) -> Iterator[tuple[RawColumn, ColumnMap, ColumnMap]]:
+    """Forces of a body that is turned in one inflow, along that flow or along the body: columns with either meaning, while nobody has named one.
+
+    Parameters
+    ----------
+    raw : RawTable
+    mapping : mapping of str to ColumnMap
+        What a person says of columns.
+    frame : Axes, optional
+        Of the file; y to starboard and z up where nobody has said it.
+    """
+    flow, of = raw.stated.get(ONE_FLOW), {c: one for c in COMPONENTS if (one := raw.meaning(c)) is not None}
+    given = {c: meaning_of(column, mapping, raw.columns) for c, column in of.items()}
+    if flow is None or ((x := given.get("X")) is not None and x.name == "X"):
+        return
+    turned = "".join(a for a in ("alpha", "beta") if (angle := raw.meaning(a)) is not None and np.any(angle.values))
+    starboard, up = (1.0, 1.0) if frame is None else (frame.rotation[1][1], -frame.rotation[2][2])
+    along = -float(str(flow.value))
+    wind: dict[str, tuple[str, float]] = {"X": ("drag", along), "Y": ("side", starboard), "Z": ("lift", up)}
+    still = {"beta": "ZKM", "alpha": "YKN"}.get(turned, "KMN")
+    for component, column in of.items():
+        if given[component] is None and (component in wind or component in still):
+            name, sign = ("ignore", 1.0) if component in still else wind[component]
+            plain = ColumnMap(component, column.unit)
+            yield column, replace(plain, name=name, negative=sign < 0.0, unit=column.unit * (name != "ignore")), plain
 
 
 def usable_rows(raw: RawTable, columns: Sequence[Assigned]) -> NDArray[np.int64]:
@@ -497,7 +528,10 @@ def mapped_table(raw: RawTable, campaign: Campaign, table: TableDeclaration) -> 
     InputError
         All that is wrong with the columns; then a cell that cannot be, or what campaign.toml leaves open.
     """
-    known = assigned(raw, declared_mapping(campaign, table), len(campaign.tables) == 1)
+    mapping = declared_mapping(campaign, table)
+    for column, flow, own in along_the_flow(raw, mapping, campaign.axes):
+        raise fault("tables.turned_in_one_flow", raw, column, flow=flow, body=own, place=raw.stated[ONE_FLOW].place)
+    known = assigned(raw, mapping, len(campaign.tables) == 1)
     if why := another_density(raw, known, campaign.conditions.density):
         raise why
     columns = _columns(raw, known, campaign)

@@ -16,6 +16,7 @@ from coeflab.core.types import Array, brief, locked
 from coeflab.tables.columns import DIGIT, UNIFORM, rounded_to
 
 HALF_MODEL = "campaign.half_model"  # key of what a symmetry plane in the domain leaves open
+ONE_FLOW = "table.flow"  # velocity of a body that is turned in the mesh: forces may count along the flow
 NO_FORCES = "a case without forces"  # what an importer says to have found where a case was never run
 
 

@@ -15,7 +15,7 @@ from coeflab.core.errors import InputError, UnitsError, shown, together
 from coeflab.core.text.delimited import read_cells
 from coeflab.core.text.toml import read_toml
 from coeflab.core.texts import input_error
-from coeflab.core.types import brief
+from coeflab.core.types import Array, brief
 from coeflab.core.units import SI, Header, factor, fits
 from coeflab.core.wording import listed, repeated
 from coeflab.law.symbols import LINEAR
@@ -38,6 +38,7 @@ from coeflab.tables.vocabulary import one_name
 RUN = "run"
 # Angles that files hold as a vector of six digits, and rates in other units, differ in their last digits.
 CLOSE, CLOSE_ANGLE = 1e-3, 1e-4
+BESIDE = "{} (beside angles)"
 _QUANTITY = re.compile(r"([-+\u2212]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][-+]?[0-9]+)?)\s*(\S.*)")
 
 
@@ -236,7 +237,9 @@ def joined(
                 else:
                     complaints.append(_contradiction(run, name, found[name], one))
         out[run] = found
-        complaints += _other_incidence(run, found)
+    turned = turned_in_one_flow(out)
+    for run, found in out.items():
+        complaints += _other_incidence(run, found, turned is not None)
     if complaints:
         raise together(complaints)
     return out
@@ -258,13 +261,36 @@ def _contradiction(run: str, name: str, a: Condition, b: Condition) -> InputErro
     return InputError(f"{name} = {a} and {b}", "one value", file=run, advice=advice)
 
 
-def _other_incidence(run: str, found: dict[str, Condition]) -> list[InputError]:
+def turned_in_one_flow(conditions: Mapping[str, Mapping[str, Condition]]) -> Condition | None:
+    """Velocity along x that all runs with angles share by their files while these angles differ: the body is turned in the mesh.
+
+    Parameters
+    ----------
+    conditions : mapping of run to mapping of str to Condition
+    """
+    rows = [c for c in conditions.values() if not {"alpha", "beta"}.isdisjoint(c)]
+    flows = [[c.get(n) or c.get(BESIDE.format(n)) for n in LINEAR] for c in rows]
+    velocity, angles = map(_numbers, (flows, [[c.get("alpha"), c.get("beta")] for c in rows]))
+    if len(rows) < 2 or np.max(np.ptp(np.nan_to_num(angles), axis=0)) <= CLOSE_ANGLE:
+        return None
+    across = np.hypot(velocity[:, 1], velocity[:, 2])
+    along = np.all(across <= CLOSE * np.abs(velocity[:, 0])) and abs(np.sign(velocity[:, 0]).sum()) == len(rows)
+    return flows[0][0] if along else None
+
+
+def _numbers(rows: Sequence[Sequence[Condition | None]]) -> Array:
+    """Values of settings, NaN for what is missing or a text."""
+    known = [[np.nan if one is None or isinstance(one.value, str) else one.value for one in row] for row in rows]
+    return np.array(known, dtype=float)
+
+
+def _other_incidence(run: str, found: dict[str, Condition], turned: bool) -> list[InputError]:
     """Velocities of the files beside angles: one of the two is a setting, and they must agree as far as axes let one say."""
     flow = [found[c] for c in LINEAR if c in found and not isinstance(found[c].value, str)]
     angles = [found[a] for a in ("alpha", "beta") if a in found and not isinstance(found[a].value, str)]
     if not flow or not angles:
         return []
-    if len(flow) == len(LINEAR):
+    if len(flow) == len(LINEAR) and not turned:
         velocity = np.array([f.value for f in flow], dtype=float)
         speed = float(np.linalg.norm(velocity))
         if speed > 0.0:
@@ -279,7 +305,7 @@ def _other_incidence(run: str, found: dict[str, Condition]) -> list[InputError]:
                 ]  # fmt: skip
     for c in LINEAR:
         if c in found:
-            found[f"{c} (beside angles)"] = found.pop(c)
+            found[BESIDE.format(c)] = found.pop(c)
     return []
 
 

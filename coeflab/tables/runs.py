@@ -147,7 +147,7 @@ def read_run(path: Path, name: str, importer: str, options: Mapping[str, Any]) -
         with IMPORTERS.guarded(importer):
             summary = summarised(plugin.run(path, options), name)
     except (InputError, OSError) as why:
-        text = why.lines[0] if isinstance(why, InputError) else str(why)
+        text = (why.lines[0] if isinstance(why, InputError) else str(why)).replace(f"{path}{os.sep}", "")
         if isinstance(why, InputError) and why.found == NO_FORCES:
             return RunSummary(name, Convergence.EMPTY, text), []
         return RunSummary(name, Convergence.UNREADABLE, text, files=(str(path.absolute()),) * path.is_file()), []

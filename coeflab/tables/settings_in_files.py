@@ -11,7 +11,7 @@ import numpy as np
 
 from coeflab.core.axes import parse_axes
 from coeflab.core.errors import InputError
-from coeflab.core.texts import input_error
+from coeflab.core.texts import input_error, text_of
 from coeflab.core.units import quantity
 from coeflab.law.scaling import doubtful_size, doubtful_viscosity, speaks_of_air
 from coeflab.tables.raw_table import RawTable, Stated
@@ -32,7 +32,7 @@ from coeflab.tables.settings import (
     read_setting,
 )
 from coeflab.tables.words.axes import FORMULA
-from coeflab.tables.words.points import ARM_FROM, OF_MOMENTS, POINT_FROM, POINT_OF
+from coeflab.tables.words.points import ARM_FROM, OF_MOMENTS, POINT_FRAME, POINT_FROM, POINT_OF
 
 
 def stated_settings(raw: RawTable) -> dict[str, Setting]:
@@ -125,6 +125,9 @@ def against_words(raw: RawTable, settings: Settings) -> list[tuple[str, str, str
     out = []
     for key, words in with_formula(raw.stated, settings).items():
         one = settings.get(POINT_OF if key == POINT_FROM else key)
+        if key == POINT_OF and one is not None and (right := _unturned_point(raw, one, settings)):
+            out.append((key, str(one.value), text_of("signs.point_not_turned", place=words.place, right=right)))
+            continue
         idle = words.contradicted or not (words.offered or words.convention)
         if one is None or idle or key.startswith(("source.", "coefficients.")):
             continue
@@ -145,6 +148,19 @@ def against_words(raw: RawTable, settings: Settings) -> list[tuple[str, str, str
             phrases = str(one.value).casefold() if isinstance(one.value, bool) else str(one.value)
             out.append((POINT_OF if key == POINT_FROM else key, phrases, words.place))
     return out
+
+
+def _unturned_point(raw: RawTable, one: Setting, settings: Settings) -> str:
+    """The file's point in FRD, where what is set are its numbers in the file's axes; empty where it is another, or the same in both."""
+    at, framed = raw.stated[POINT_OF].value, raw.stated.get(POINT_FRAME)
+    frame = frame_of(settings) if framed is None or framed.contradicted else parse_axes(framed.value)
+    if frame is None or not isinstance(at, tuple) or not isinstance(one.value, list):
+        return ""
+    own, point = np.array(at, dtype=float), np.array([quantity(x, "length") for x in one.value])
+    right = frame.rotation @ own
+    near = SAME_SIZE * float(np.linalg.norm(own))
+    copied = own.shape == point.shape and np.all(np.abs(point - own) <= near)
+    return f"{right.tolist()}" if copied and np.any(np.abs(point - right) > near) else ""
 
 
 def known_length(raw: RawTable, settings: Settings) -> float | None:

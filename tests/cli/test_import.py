@@ -500,6 +500,16 @@ def test_a_folder_of_runs_becomes_a_campaign_that_weighs_its_points(runs: Path, 
     assert in_place.files[1].sha256 == sha256_of(runs, [runs / n / FILE for n in RUNS])
 
 
+def test_a_point_copied_from_the_file_without_turning_its_axes_warns(runs: Path, tmp_path: Path) -> None:
+    """The file's (1.2, 0, 0) with x aft is (-1.2, 0, 0) in FRD."""
+    known = {"axes.frame": "CFD", "axes.datum": "midship", "scaling.length": "4 m LOA"}
+    ask = ("import", runs, "--out", tmp_path / "out", "--name", "b{beta:deg:m=-}", "--accept", "--force",
+           *[a for k, v in known.items() for a in ("--set", f"{k}={v}")])  # fmt: skip
+    copied, turned = (flat(invoke(*ask, "--set", f"axes.reference_point={x},0,0").output) for x in (1.2, -1.2))
+    assert "that point is [-1.2, 0.0, 0.0] in FRD" in copied
+    assert "in FRD" not in turned.replace("in SI and FRD", "")
+
+
 def test_kinematic_forces_of_a_solver_keep_their_density_with_its_unit(stub: Path, tmp_path: Path) -> None:
     """rhoInf 1: primes by 1 kg/m^3 of forces of 1 kg/m^3, in campaign.toml as it is read again."""
     for seed, (name, beta) in enumerate(RUNS.items()):

@@ -6,6 +6,7 @@ from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
+import numpy as np
 import pytest
 
 from coeflab.core.finding import Severity
@@ -71,6 +72,36 @@ def test_forces_of_half_of_a_body_are_named(tmp_path: Path, csv: str, halves: st
 def test_a_side_force_in_every_row_of_an_attack_sweep_is_named_without_a_declaration(tmp_path: Path) -> None:
     (found,) = warned(tmp_path, sweep("alpha", "Z", "M", "Y", 8.0), '["up-down"]')
     assert "Y is 44%" in found.statistic
+
+
+@pytest.mark.parametrize(
+    ("component", "rest", "slope", "first"),
+    [
+        ("Y", -0.006, -0.0145, "Forces of half of the body"),  # pressure on the cut
+        ("K", 6e-5, 1e-6, "Forces of half of the body"),  # its vertical force at the lever of one half
+        ("Y", -0.001, -0.0145, "A large bias: look for a misaligned model"),
+        ("K", 2e-6, 1e-7, "A large bias: look for a misaligned model"),  # of a lever of 0.05 % of the length
+    ],
+)
+def test_what_no_angle_changes_names_half_of_a_body_first(
+    component: str, rest: float, slope: float, first: str
+) -> None:
+    v = np.sin(np.radians(np.arange(-8.0, 9.0, 2.0)))
+    plain = {
+        "variable": "v",
+        "value": slope,
+        "symmetry": "",
+        "campaign": "c",
+        "parity": "odd",
+        "bias": 0.0,
+        "by_symmetry": "",
+    }
+    sweeps = [SimpleNamespace(component="Y", at_rest=(0.0, 1e-6), y=-0.0145 * v, **plain)]
+    sweeps += [SimpleNamespace(component=component, at_rest=(rest, 1e-7), y=rest + slope * v, **plain)]
+    study: Any = SimpleNamespace(fits=[SimpleNamespace(sweeps=sweeps, findings=())], tables=())
+    found = list(symmetry.check(study))[-1]
+    assert found.severity is Severity.WARN
+    assert found.comment.startswith(first)
 
 
 @pytest.mark.parametrize(

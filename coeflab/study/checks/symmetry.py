@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import defaultdict
 from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
@@ -9,10 +10,11 @@ import numpy as np
 
 from coeflab.core.finding import Finding, Severity
 from coeflab.core.table import Check, as_check, plus_minus
+from coeflab.law.symbols import FORCES
 from coeflab.study.single_motion import commanded
 from coeflab.tables.campaign import CUTS, Cut
 from coeflab.tables.force_table import AT_REST, ForceTable
-from coeflab.tables.half_bodies import Along, forces_across, judged
+from coeflab.tables.half_bodies import FORCE, LEVER, MOMENT, Along, forces_across, judged
 
 if TYPE_CHECKING:
     from coeflab.fits.results.fit_result import Sweep
@@ -23,9 +25,11 @@ citations = ("wahba1990",)
 ZEROS = 1e-9  # of the largest primed force or moment of the campaign: below it a component holds numerical zeros
 RULED_OUT = ("symmetry.withdrawn", "symmetry.planes", "symmetry.body")
 NOTHING, LARGE = 1e-3, 0.05
+HALF = 0.5  # of the largest reading: what does not change its sign over a sweep to both sides is of no angle
 
 
-def _intercept(sweep: Sweep) -> Check | None:
+def _intercept(sweep: Sweep, force: float) -> Check | None:
+    """A component at rest; ``force`` is the largest primed force of its campaign."""
     if sweep.component not in "YKN" or sweep.variable not in ("v", "r") or sweep.value is None or sweep.symmetry:
         return None
     value, error = sweep.at_rest
@@ -38,7 +42,8 @@ def _intercept(sweep: Sweep) -> Check | None:
     elif share < LARGE:
         severity, size = Severity.NOTE, "small"
     else:
-        severity, size = Severity.WARN, "large"
+        least = force * (FORCE if sweep.component in FORCES else MOMENT * LEVER)
+        severity, size = Severity.WARN, "half" if share > HALF and abs(value) > least else "large"
     return Check.of(
         "symmetry.intercept", f"{sweep.campaign} {sweep.component}0'", severity, component=f"{sweep.component}'", motion=_motion(sweep),
         value=plus_minus(value, error), share=100 * share, note=100 * NOTHING, warning=100 * LARGE, size=size,
@@ -52,14 +57,16 @@ def _motion(sweep: Sweep) -> str:
 def check(study: Study) -> Sequence[Check]:
     """One finding per odd sweep of a port-starboard component; one per table with forces across a plane of symmetry."""
     sweeps = [s for f in study.fits for s in f.sweeps]
-    largest: dict[str, float] = {}
+    largest, force = defaultdict[str, float](float), defaultdict[str, float](float)
     for s in sweeps:
-        largest[s.campaign] = max(largest.get(s.campaign, 0.0), float(np.abs(s.y).max(initial=0.0)))
+        size = float(np.abs(s.y).max(initial=0.0))
+        largest[s.campaign] = max(largest[s.campaign], size)
+        force[s.campaign] = max(force[s.campaign], size * (s.component in FORCES))
     odd = [s for s in sweeps if s.parity == "odd" and np.abs(s.y).max(initial=0.0) >= ZEROS * largest[s.campaign]]
     across = [c for t in study.tables if not t.by_symmetry for cut in CUTS.values() for c in _across(t, cut)]
     ruled_out = [f for fit in study.fits for f in fit.findings if f.code in RULED_OUT]
     found = [as_check("symmetry", f) for f in (*biases(study), *ruled_out)]
-    return [c for s in odd if (c := _intercept(s)) is not None] + found + across
+    return [c for s in odd if (c := _intercept(s, force[s.campaign])) is not None] + found + across
 
 
 def biases(study: Study) -> tuple[Finding, ...]:
