@@ -185,7 +185,8 @@ def motions_and_forces(point: Array, v: Array, r: Array, *, moments: bool = True
     y = q * (SLOPES["Yv"] * vp - 0.2 * vp**3 + SLOPES["Yr"] * rp + 0.01 * rp * np.abs(rp))
     n = q * LENGTH * (SLOPES["Nv"] * vp + 0.1 * vp**3 + SLOPES["Nr"] * rp - 0.004 * rp * np.abs(rp))
     shift = point - POINT
-    out = {"u [m/s]": u, "v [m/s]": v + shift[0] * r, "r [rad/s]": r, "U [m/s]": np.full(len(v), SPEED), "Y [N]": y}
+    along = v + shift[0] * r
+    out = {"u [m/s]": u, "v [m/s]": along, "r [rad/s]": r, "U [m/s]": np.hypot(u, along), "Y [N]": y}
     return out | ({"N [N*m]": n - shift[0] * y} if moments else {})
 
 
