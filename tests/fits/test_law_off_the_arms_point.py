@@ -167,7 +167,13 @@ def off_the_point(ahead: float) -> list[ForceTable]:
         for into, at, size in ((columns, moving, there), (drift, still, SPEED)):
             prime = sum(k * read_term(s, "truth").term.evaluate(at) for s, k in own.items() if s[0] == c)
             into[f"{c} [{'N*m' if c == 'N' else 'N'}]"] = FORCE * lever * (size / SPEED) ** 2 * prime
-    more = {"frame": "FRD", "about": "nose, 2.5 m aft", "length": "5 m LOA", "density": DENSITY, "beta": "v = +U sin(beta)"}
+    more = {
+        "frame": "FRD",
+        "about": "nose, 2.5 m aft",
+        "length": "5 m LOA",
+        "density": DENSITY,
+        "beta": "v = +U sin(beta)",
+    }
     turned = cf.read_table(columns, name="arm", contains_inertia=False, arm_point=[ahead - 2.5, 0.0, 0.0], **more)
     return one_campaign(cf.read_table(drift, name="drift", **more), turned)
 
