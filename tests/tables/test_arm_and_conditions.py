@@ -87,6 +87,13 @@ def test_a_point_ahead_of_the_arm_point_drifts_by_x_r(read_table: Read) -> None:
     np.testing.assert_allclose(velocity(by_rate), velocity(table), rtol=1e-14)
 
 
+def test_rows_of_one_speed_are_those_of_the_arms_point(read_table: Read) -> None:
+    """1.5 m ahead of it U is 2.136 m/s, by which that row is primed; it was run at 2 m/s."""
+    table = read_table("R [m],U [m/s],Y [N]\n4,2,1\n4,3,1\n", table=ARM.replace("-2.0", "-3.5"))
+    np.testing.assert_allclose(table.speed, np.array([2.0, 3.0]) * np.hypot(1.0, 1.5 / 4.0), rtol=1e-14)
+    assert table.at_speed(2.0).usable["Y"].tolist() == [True, False]
+
+
 def assumed_keys(table: ForceTable) -> list[str]:
     return [f["key"] for f in table.findings if f.code == CODE]
 

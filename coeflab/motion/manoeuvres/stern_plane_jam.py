@@ -113,7 +113,7 @@ def figures(trajectory: Trajectory, vehicle: Vehicle, options: Mapping[str, Any]
         ("pitch at recovery", value_at(t, pitch, begun), "rad", begun, f"bow {bow}"),
         ("depth excursion", deepest[1] if deepest is not None and turned else None, "m", deepest[0] if deepest else None, f"largest change {way} from the start"),
         ("time to depth excursion", deepest[0] if deepest is not None and turned else None, "s", deepest[0] if deepest else None, "from the jam"),
-        ("largest pitch", steepest[1] if steepest else None, "rad", steepest[0] if steepest else None, f"bow {bow}, counted on past the vertical"),
+        ("largest pitch", steepest[1] if steepest else None, "rad", steepest[0] if steepest else None, f"bow {bow}, not wrapped"),
         ("time to level", level, "s", level, "from the jam until pitch passes zero"),
         ("speed at the end", float(np.linalg.norm(trajectory.velocity[-1, :3])), "m/s", float(t[-1]), f"after {t[-1]:.4g} s"),
     )  # fmt: skip
