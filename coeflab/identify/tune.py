@@ -101,7 +101,7 @@ def tune(plan: TuningPlan) -> Tuned:
         words.insert(0, "Standard errors are those of the residuals (maximum likelihood); none were stated.")
     moved_parameters = tuned_parameters(names, [f.unit for f in plan.free], p, found)
     drives = _driving(plan, moved_parameters)
-    words += [remark(f) for f in drives]
+    words += [remark(f) for f in (*plan.findings, *drives)]
     tuning = Tuning(
         plan.name, moved_parameters, found.correlation, found.covariance,
         _quantities(plan.cases, p, found),

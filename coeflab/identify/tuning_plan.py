@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 from coeflab.core import declarations as takes
 from coeflab.core.errors import InputError, shown
 from coeflab.core.files import named
+from coeflab.core.finding import Finding, Severity
 from coeflab.core.text.delimited import Cells, read_cells, require_unit
 from coeflab.core.text.toml import TomlFile, read_toml
 from coeflab.core.texts import input_error
@@ -217,6 +218,7 @@ SIGNED = ("v", "r", "beta")
 FROM_RESIDUALS = "from residuals"
 FilePath = Annotated[Path, takes.located_in("cfd_data")]
 ERRORS = f'a standard error for each measured column, or "{FROM_RESIDUALS}"'
+REPEATS = 0.1  # of its standard error: a reading that is nearer to what follows from the others is no other reading
 FIRST_GUESS = 0.1  # of the spread of what was measured: the rounds replace it
 
 
@@ -296,6 +298,8 @@ class TuningPlan:
     cases : SteadyCases
     from_residuals : bool
         Whether standard errors are those of the residuals.
+    findings : tuple of Finding
+        What of the measured follows from the rest.
     """
 
     name: str
@@ -305,6 +309,7 @@ class TuningPlan:
     free: tuple[FreeParameter, ...]
     cases: SteadyCases
     from_residuals: bool
+    findings: tuple[Finding, ...] = ()
 
 
 def _no_name(text: str) -> str:
@@ -448,7 +453,35 @@ def read_tuning_plan(path: Path) -> TuningPlan:
     if len({f.name for f in free}) < len(free):
         raise toml.fail("free", "a name more than once", "names of their own")
     cases, from_residuals = _cases(file.measured, parameters, toml)
-    return TuningPlan(file.tune.name, path, file.tune.parameters, parameters, free, cases, from_residuals)
+    cases, found = counted_once(cases)
+    return TuningPlan(file.tune.name, path, file.tune.parameters, parameters, free, cases, from_residuals, found)
+
+
+def counted_once(cases: SteadyCases) -> tuple[SteadyCases, tuple[Finding, ...]]:
+    """The cases without readings that only repeat others: beta and V of u and v, a radius of V and r.
+
+    A reading that differs from what follows by more than `REPEATS` of its error is one of its own and counts.
+    """
+    empty = np.full(len(cases.lines), np.nan)
+    x = dict.fromkeys(QUANTITIES, empty) | dict(zip(cases.names, np.abs(cases.measured).T, strict=True))
+    with np.errstate(divide="ignore", invalid="ignore"):
+        along = np.hypot(x["u"], x["v"])
+        speeds = (along, x["u"] / np.cos(x["beta"]), x["v"] / np.sin(x["beta"]))
+        speed = np.select([np.isfinite(v) for v in speeds], speeds, np.nan)
+        known = np.where(np.isfinite(x["V"]), x["V"], speed)
+        follows = {"beta": np.arcsin(x["v"] / along), "V": speed, "radius": known / x["r"]}
+    measured, found = cases.measured.copy(), list[Finding]()
+    for k, name in enumerate(cases.names):
+        apart = (x[name] - follows.get(name, empty)) / cases.errors[:, k]
+        both = np.isfinite(apart)
+        if np.any(both):
+            size = float(np.sqrt(np.mean(apart[both] ** 2)))
+            measured[both & (size <= REPEATS), k] = np.nan
+            case = "left" if size <= REPEATS else "counted"
+            found.append(Finding.of("tune.repeats", name, Severity.NOTE, statistic=size, threshold=REPEATS, case=case))
+    seen = np.any(np.isfinite(measured), axis=0)
+    names = tuple(n for n, own in zip(cases.names, seen, strict=True) if own)
+    return replace(cases, names=names, measured=measured[:, seen], errors=cases.errors[:, seen]), tuple(found)
 
 
 def _free(keys: FreeKeys, p: ParameterFile, toml: TomlFile, at: str) -> FreeParameter:

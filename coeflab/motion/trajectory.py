@@ -92,6 +92,13 @@ class Trajectory:
         return euler_angles(np.asarray(self.attitude))
 
     @property
+    def pitch(self) -> Array:
+        """(n,) rad, counted on past the vertical, where roll of `angles` jumps by half a turn and its pitch comes back."""
+        roll, pitch, _ = self.angles.T
+        over = np.cumsum(np.cos(np.diff(roll, prepend=roll[:1])) < 0.0) % 2 == 1
+        return np.asarray(np.unwrap(np.where(over, np.pi - pitch, pitch)))
+
+    @property
     def speed(self) -> Array:
         """(n,) through the water, m/s."""
         return np.asarray(np.linalg.norm(self.velocity[:, :3], axis=1))

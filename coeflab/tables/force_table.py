@@ -31,6 +31,7 @@ ONE_GRID = 1.15  # ratio of cells: those of one grid at other angles lie closer
 # What each part is called.
 STUDIES = {"domain": "domain size", "turbulence": "turbulence model", "iterations": "iterations"}
 DRIVEN = "propeller running: X holds its thrust"
+RUNS_AT_U = 0.05  # of U: rows whose velocity is as long, not those of damping about a state of rest
 SAME_SIZE = 0.02  # of the largest |x|: one radius, or one setting of a sweep, as measured
 
 
@@ -116,7 +117,7 @@ class ForceTable:
     controls : mapping of str to (n,) array
         Angles of control surfaces in radians, keys ``dr`` ``ds`` ``db``.
     speed : (n,) array
-        Speed U that the test was run at, m/s.
+        U at the reference point, m/s, by which primes go; of rows without way the one that the campaign states.
     forces : mapping of str to (n,) array
         The measured ones of X Y Z K M N, N and N m, FRD; NaN where blank.
     errors : mapping of str to (n,) array
@@ -315,8 +316,10 @@ class ForceTable:
         return replace(self, usable=usable, exclusions=(*self.exclusions, *found))
 
     def at_speed(self, speed: float) -> ForceTable:
-        """The rows of one speed in use, m/s, as measured; the others are left out."""
-        away = np.abs(self.speed - speed) > SAME_SIZE * abs(speed)
+        """The rows of one speed in use, m/s, as measured and where it was stated; the others are left out."""
+        points = (self.arm_point, self.measured_about, self.reference_point)
+        stated = self.about(next(p for p in points if p is not None)).speed
+        away = np.abs(stated - speed) > SAME_SIZE * abs(speed)
         return self._without(away, lambda _: f"another speed than {speed:g} m/s")
 
     def without_studies(self) -> ForceTable:
@@ -366,7 +369,7 @@ class ForceTable:
         return replace(self, datum=datum, reference_point=point) if self.datum == ANYWHERE else self
 
     def about(self, point: Array) -> ForceTable:
-        """The same runs with velocities and moments about another point (m, FRD, from the same datum).
+        """The same runs with velocities, U and moments about another point (m, FRD, from the same datum).
 
         Standard errors of moments become the bound |se_N| + |shift| |se_Y|, which holds for any correlation of force
         and moment errors, as tables do not state it.
@@ -374,7 +377,8 @@ class ForceTable:
         shift = np.asarray(point, dtype=float) - self.reference_point
         if not np.any(shift):
             return self
-        nu = np.column_stack([self.motion[m] for m in MOTIONS]) @ velocity_transfer(shift).T
+        here = np.column_stack([self.motion[m] for m in MOTIONS])
+        nu = here @ velocity_transfer(shift).T
         transfer = force_transfer(shift)
         forces, errors, usable = dict(self.forces), dict(self.errors), dict(self.usable)
         rounding, digits = dict(self.rounding), self.digits
@@ -404,6 +408,7 @@ class ForceTable:
         return replace(
             self,
             motion=dict(zip(MOTIONS, nu.T, strict=True)),
+            speed=speed_at(self.speed, here[:, :3], nu[:, :3]),
             forces=forces,
             errors=errors,
             rounding=rounding,
@@ -431,6 +436,19 @@ class ForceTable:
             for component in [e.component] if e.component else usable:
                 usable[component][e.row] = False
         return replace(self, usable=usable, exclusions=tuple(selected), notes=(*self.notes, "doubtful cells in use"))
+
+
+def speed_at(speed: Array, before: Array, after: Array) -> Array:
+    """U of rows, (n,), whose velocities (n, 3) become those of another point; a U that is not the length of its velocity stays.
+
+    Examples
+    --------
+    >>> speed_at(np.array([3.0, 1.0]), np.array([[3.0, 0.0, 0.0], [0.0, 0.0, 0.0]]), np.array([[3.0, 4.0, 0.0], [0.0, 4.0, 0.0]]))
+    array([5., 1.])
+    """
+    here, there = np.linalg.norm(before, axis=1), np.linalg.norm(after, axis=1)
+    runs = (np.abs(here - speed) <= RUNS_AT_U * speed) & (there > AT_REST * here)
+    return np.asarray(speed * np.divide(there, here, out=np.ones(len(speed)), where=runs))
 
 
 def grids(cells: Array) -> NDArray[np.intp]:

@@ -19,7 +19,7 @@ from coeflab.tables.assumptions import INERTIA, assumed
 from coeflab.tables.campaign import CENTRES, SIDES, SIGNED, Campaign, Cut, TableDeclaration, TowedInertia, cut_of
 from coeflab.tables.column_map import WIND
 from coeflab.tables.columns import Columns, first_row
-from coeflab.tables.force_table import DRIVEN, Declared, Exclusion, ForceTable, running_rows
+from coeflab.tables.force_table import DRIVEN, Declared, Exclusion, ForceTable, running_rows, speed_at
 from coeflab.tables.wind_axes import in_body_axes
 
 BLANK, MARKED = "blank in the source", 'marked "uncertain" in the source'
@@ -89,7 +89,7 @@ def force_table(columns: Columns, campaign: Campaign, table: TableDeclaration) -
         body=campaign.body,
         motion=motion,
         controls=columns.controls,
-        speed=columns.speed,
+        speed=speed_at(columns.speed, _linear(columns, campaign), np.column_stack([motion[m] for m in LINEAR])),
         forces=forces,
         errors=errors,
         rounding={c: np.stack([forces[c], error]) for c, error in rounding.items() if c in forces},

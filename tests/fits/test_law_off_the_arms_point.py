@@ -150,3 +150,42 @@ def test_the_runs_of_the_arm_are_points_of_the_law() -> None:
     spoken = {("Y", drift.name): frozenset("v"), ("Y", turning.name): frozenset("r")}
     found = measured_tables([drift, turning], fits, spoken, {}, frozenset(), LENGTH, DENSITY)
     assert [(t.table, len(t.labels)) for t in found] == [(drift.name, len(SINES)), (turning.name, len(RATES))]
+
+
+def off_the_point(ahead: float) -> list[ForceTable]:
+    """Drift, and combined rows whose U and angle hold at a point ``ahead`` of the study's, by a law of U at the study's."""
+    own = {s: k for s, k in TRUTH["v"].items() if s in ("X0", "Xvv", "Xvr", "Yv", "Yr")} | {"Nv": -0.014, "Nr": -0.005}
+    beta, turning = (x.ravel() for x in np.meshgrid(np.radians([-8.0, -4.0, 0.0, 4.0, 8.0]), RATES))
+    r = turning * SPEED / LENGTH
+    u, v = SPEED * np.cos(beta), SPEED * np.sin(beta) - ahead * r
+    there = np.hypot(u, v)
+    columns = {"U [m/s]": np.full(len(r), SPEED), "beta [deg]": np.degrees(beta), "r [rad/s]": r}
+    moving = {"v": v / there, "r": r * LENGTH / there}
+    still = {"v": SINES, "r": 0.0 * SINES}
+    drift = {"U [m/s]": np.full(len(SINES), SPEED), "beta [deg]": np.degrees(np.arcsin(SINES))}
+    for c, lever in (("X", 1.0), ("Y", 1.0), ("N", LENGTH)):
+        for into, at, size in ((columns, moving, there), (drift, still, SPEED)):
+            prime = sum(k * read_term(s, "truth").term.evaluate(at) for s, k in own.items() if s[0] == c)
+            into[f"{c} [{'N*m' if c == 'N' else 'N'}]"] = FORCE * lever * (size / SPEED) ** 2 * prime
+    more = {
+        "frame": "FRD",
+        "about": "nose, 2.5 m aft",
+        "length": "5 m LOA",
+        "density": DENSITY,
+        "beta": "v = +U sin(beta)",
+    }
+    turned = cf.read_table(columns, name="arm", contains_inertia=False, arm_point=[ahead - 2.5, 0.0, 0.0], **more)
+    return one_campaign(cf.read_table(drift, name="drift", **more), turned)
+
+
+@pytest.mark.parametrize("ahead", [-1.0, 0.25])
+def test_runs_are_primed_by_the_speed_of_the_point_that_the_law_is_about(ahead: float) -> None:
+    """By U of the arm's point X0' x'^2 stands in Xrr', and a part of its order in Xvr'."""
+    tables = off_the_point(ahead)
+    law, slopes = (laws(tables)[name, "tests"].coefficients for name in ("tied_law", "slope_at_origin"))
+    assert law["Xvr"].value == pytest.approx(TRUTH["v"]["Xvr"], rel=1e-6)
+    curvature = [c.value for c in law.coefficients if c.symbol == "Xrr"]
+    assert curvature == pytest.approx([0.0] * len(curvature), abs=1e-9)
+    for symbol in ("Yr", "Nr"):
+        got, truth = slopes[symbol], (TRUTH["v"] | {"Nr": -0.005})[symbol]
+        assert abs(got.value - truth) <= got.u95

@@ -92,6 +92,29 @@ def test_noise_is_covered_by_the_intervals(plan: Write) -> None:
         assert 0.0 < abs(p.after - truth) < 2.0 * p.u95
 
 
+def test_columns_that_follow_from_others_count_once(plan: Write) -> None:
+    """V, v, and a radius computed from u, beta and r are no further readings; a radius with noise of its own is one."""
+    rng, lines = np.random.default_rng(7), table(noise=1.0).splitlines()
+    more, noisy = [f"{lines[0]},V [m/s],radius [m]"], [f"{lines[0]},radius [m]"]
+    for line in lines[1:]:
+        u, beta, r = map(float, line.split(",")[2:])
+        speed = u / np.cos(np.radians(beta))
+        radius = speed / abs(np.radians(r))
+        more.append(f"{line},{speed:.4f},{radius:.4f}")
+        noisy.append(f"{line},{radius + 0.1 * rng.normal():.4f}")
+    own = ERRORS.replace("}", ', V = "0.01 m/s", radius = "0.1 m" }')
+    alone = tune(read_tuning_plan(plan(csv="\n".join(lines)))).tuning
+    both = read_tuning_plan(plan(csv="\n".join(more), measured=own))
+    assert both.cases.names == ("u", "beta", "r")
+    assert [(f["case"], f.subject) for f in both.findings] == [("left", "V"), ("left", "radius")]
+    repeated = tune(both).tuning
+    assert [p.u95 for p in repeated.parameters] == [p.u95 for p in alone.parameters]
+    assert sum("follows from the other columns" in s for s in repeated.statements) == 2
+    other = read_tuning_plan(plan(csv="\n".join(noisy), measured=ERRORS.replace("}", ', radius = "0.1 m" }')))
+    assert [(f["case"], f.subject) for f in other.findings] == [("counted", "radius")]
+    assert other.cases.names == ("u", "beta", "r", "radius")
+
+
 def test_derivatives_are_those_of_solved_motions(plan: Write) -> None:
     p = tuning_problem(read_tuning_plan(plan()))
     by_solving = replace(p, jacobian=None).slopes(p.start)

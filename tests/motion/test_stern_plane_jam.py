@@ -55,6 +55,21 @@ def test_excursions_are_those_of_the_closed_form(way: str, sign: float) -> None:
     assert run["depth excursion"].value > 2.0 * run["depth at recovery"].value
 
 
+@pytest.mark.parametrize(("way", "reaction"), [("dive", 8.0), ("rise", 8.0), ("dive", 13.0)])
+def test_pitch_counts_on_past_the_vertical(way: str, reaction: float) -> None:
+    """Freed and against at once: the closed form turns back beyond 105 deg, or goes on over its back, which is not level."""
+    jammed, against = abs(STERN) * 0.5, abs(BOW) * 0.6
+    run = cf.simulate(
+        pitching(), "stern_plane_jam", free=("q",), planes=0.5, bow=0.6, reaction=reaction, freed=1e-3, way=way, record=0.01,
+    )  # fmt: skip
+    first = pitch(reaction, jammed, 0.0, 0.0)
+    turned = brentq(lambda t: pitch(t, -against, *first)[0], 0.0, 20.0)
+    assert run["largest pitch"].value == pytest.approx(pitch(turned, -against, *first)[1], rel=2e-3)
+    assert run["pitch at recovery"].value == pytest.approx(first[1], rel=1e-4)
+    assert np.pi / 2.0 < first[1]
+    assert (run["time to level"].value is not None) == (pitch(turned, -against, *first)[1] < np.pi)
+
+
 def test_the_crew_acts_after_three_lengths_unless_asked_otherwise() -> None:
     run = cf.simulate(pitching(), "stern_plane_jam", free=("q",), planes=JAM, longest=5.0)
     first = pitch(3.0 * LENGTH / SPEED, -abs(STERN) * JAM, 0.0, 0.0)

@@ -87,6 +87,13 @@ def test_a_point_ahead_of_the_arm_point_drifts_by_x_r(read_table: Read) -> None:
     np.testing.assert_allclose(velocity(by_rate), velocity(table), rtol=1e-14)
 
 
+def test_rows_of_one_speed_are_those_of_the_arms_point(read_table: Read) -> None:
+    """1.5 m ahead of it U is 2.136 m/s, by which that row is primed; it was run at 2 m/s."""
+    table = read_table("R [m],U [m/s],Y [N]\n4,2,1\n4,3,1\n", table=ARM.replace("-2.0", "-3.5"))
+    np.testing.assert_allclose(table.speed, np.array([2.0, 3.0]) * np.hypot(1.0, 1.5 / 4.0), rtol=1e-14)
+    assert table.at_speed(2.0).usable["Y"].tolist() == [True, False]
+
+
 def assumed_keys(table: ForceTable) -> list[str]:
     return [f["key"] for f in table.findings if f.code == CODE]
 
@@ -185,7 +192,8 @@ def motions_and_forces(point: Array, v: Array, r: Array, *, moments: bool = True
     y = q * (SLOPES["Yv"] * vp - 0.2 * vp**3 + SLOPES["Yr"] * rp + 0.01 * rp * np.abs(rp))
     n = q * LENGTH * (SLOPES["Nv"] * vp + 0.1 * vp**3 + SLOPES["Nr"] * rp - 0.004 * rp * np.abs(rp))
     shift = point - POINT
-    out = {"u [m/s]": u, "v [m/s]": v + shift[0] * r, "r [rad/s]": r, "U [m/s]": np.full(len(v), SPEED), "Y [N]": y}
+    along = v + shift[0] * r
+    out = {"u [m/s]": u, "v [m/s]": along, "r [rad/s]": r, "U [m/s]": np.hypot(u, along), "Y [N]": y}
     return out | ({"N [N*m]": n - shift[0] * y} if moments else {})
 
 

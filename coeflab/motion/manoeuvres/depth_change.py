@@ -72,7 +72,7 @@ def plan(vehicle: Vehicle, options: Mapping[str, Any]) -> Manoeuvre:
 def figures(trajectory: Trajectory, vehicle: Vehicle, options: Mapping[str, Any]) -> tuple[Figure, ...]:
     """Times and overshoots."""
     o = parse_options(Options, options, NAME)
-    t, depth, pitch = trajectory.time, trajectory.position[:, 2], trajectory.angles[:, 1]
+    t, depth, pitch = trajectory.time, trajectory.position[:, 2], trajectory.pitch
     down = o.way == "dive"
     lacking = unlimited(vehicle, "q", float(trajectory.velocity[0, 0]))
     execute, level = (*trajectory.reached, None, None)[:2]

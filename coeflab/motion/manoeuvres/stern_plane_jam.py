@@ -99,9 +99,11 @@ def figures(trajectory: Trajectory, vehicle: Vehicle, options: Mapping[str, Any]
     o = parse_options(Options, options, NAME)
     t, down = trajectory.time, 1.0 if o.way == "dive" else -1.0
     depth = down * (trajectory.position[:, 2] - trajectory.position[0, 2])
-    pitch = -down * trajectory.angles[:, 1]
+    pitch = -down * trajectory.pitch
     begun = min(float(t[-1]), o.reaction or LENGTHS * vehicle.length / float(trajectory.velocity[0, 0]))
     level = trajectory.reached[2 if o.freed else 1] if len(trajectory.reached) > 1 + bool(o.freed) else None
+    if level is not None and abs(value_at(t, pitch, level)) > np.pi / 2.0:  # upside down
+        level = None
     deepest, steepest = extreme(t, depth, largest=True, after=0.0), extreme(t, pitch, largest=True, after=0.0)
     turned = deepest is not None and deepest[0] < t[-1]
     lacking = unlimited(vehicle, "q", float(trajectory.velocity[0, 0]))
@@ -111,7 +113,7 @@ def figures(trajectory: Trajectory, vehicle: Vehicle, options: Mapping[str, Any]
         ("pitch at recovery", value_at(t, pitch, begun), "rad", begun, f"bow {bow}"),
         ("depth excursion", deepest[1] if deepest is not None and turned else None, "m", deepest[0] if deepest else None, f"largest change {way} from the start"),
         ("time to depth excursion", deepest[0] if deepest is not None and turned else None, "s", deepest[0] if deepest else None, "from the jam"),
-        ("largest pitch", steepest[1] if steepest else None, "rad", steepest[0] if steepest else None, f"bow {bow}"),
+        ("largest pitch", steepest[1] if steepest else None, "rad", steepest[0] if steepest else None, f"bow {bow}, not wrapped"),
         ("time to level", level, "s", level, "from the jam until pitch passes zero"),
         ("speed at the end", float(np.linalg.norm(trajectory.velocity[-1, :3])), "m/s", float(t[-1]), f"after {t[-1]:.4g} s"),
     )  # fmt: skip
