@@ -27,7 +27,7 @@ def command(
     accept_loss: bool = False,
     strict: bool = False,
     accelerations: str = "measured",
-    density: str = "",
+    density: float | None = None,
     json: bool = False,
 ) -> None:
     """Write what simulators load, and say what is lost.
@@ -42,15 +42,14 @@ def command(
     from coeflab.api.vehicle import Vehicle
     from coeflab.core.errors import together
     from coeflab.core.files import write_all
-    from coeflab.core.text.toml import typed_value
     from coeflab.report.as_json.findings import findings as findings_json
     from coeflab.report.as_json.studies import export as export_json
 
     targets = named(to)
     require_targets(targets)
     vehicle = cf.read_vehicle(file)
-    if density:
-        vehicle = Vehicle(in_water(vehicle.file, above_zero(typed_value(density), "density", "density")))
+    if density is not None:
+        vehicle = Vehicle(in_water(vehicle.file, above_zero(density, "density", "density")))
     parameters = vehicle.file
     if not json:
         show.not_used(parameters)

@@ -27,6 +27,7 @@ LISTS = {
     ("report/as_json/studies.py", "check"): "keys of JSON",
     ("published/huuv/model.py", "check"): "keys of a parameter file",
     ("vehicle/merge.py", "check"): "keys of a parameter file",
+    ("vehicle/other_water.py", "check"): "keys of a parameter file",
     ("report/figures/part_pictures.py", "body reader"): "kinds of form",
     ("report/figures/outline_overlay.py", "method of estimates"): "kinds of part in a drawing",
 }

@@ -242,12 +242,12 @@ TRIMS = (
     ("sign of m v x r under the tracks", trims_law("tracks", momentum_quadratics, "out[:3, 3:, :] -= ", "out[:3, 3:, :] += ")),
 )  # fmt: skip
 BENCHES = (
-    ("equations 41 and 43: thrust of the bench +5 %", bench_law("table[:, k]))", "(1.05 if load == 'thrust' else 1.0) * table[:, k]))")),
-    ("equations 41 and 43: sign of the thrust of the bench", bench_law("table[:, k]))", "(-1.0 if load == 'thrust' else 1.0) * table[:, k]))")),
-    ("equations 42 and 44: torque of the bench +5 %", bench_law("table[:, k]))", "(1.05 if load == 'torque' else 1.0) * table[:, k]))")),
-    ("equations 42 and 44: sign of the torque of the bench", bench_law("table[:, k]))", "(-1.0 if load == 'torque' else 1.0) * table[:, k]))")),
+    ("equations 41 and 43: thrust of the bench +5 %", bench_law("design, table[:, k],", "design, (1.05 if load == 'thrust' else 1.0) * table[:, k],")),
+    ("equations 41 and 43: sign of the thrust of the bench", bench_law("design, table[:, k],", "design, (-1.0 if load == 'thrust' else 1.0) * table[:, k],")),
+    ("equations 42 and 44: torque of the bench +5 %", bench_law("design, table[:, k],", "design, (1.05 if load == 'torque' else 1.0) * table[:, k],")),
+    ("equations 42 and 44: sign of the torque of the bench", bench_law("design, table[:, k],", "design, (-1.0 if load == 'torque' else 1.0) * table[:, k],")),
     ("equations 41 to 44: square of the rotor speed +5 %", bench_law("command, squares = table[:, 0], table[:, 1]", "command, squares = table[:, 0], 1.05 * table[:, 1]")),
-    ("equations 41 to 44: n^3 for n^2", bench_law("np.column_stack([command, squares])", "np.column_stack([command, command * squares])")),
+    ("equations 41 to 44: n^3 for n^2", bench_law("_design(command, squares,", "_design(command, command * squares,")),
 )  # fmt: skip
 
 FLYINGFISH = (

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from dataclasses import replace
 from html.parser import HTMLParser
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -202,23 +203,27 @@ def test_coefficients_fit_80_columns(monkeypatch: pytest.MonkeyPatch) -> None:
         "calibrated slope",
     )
     none = ("no table", *["-"] * 7, "tank_of_a_long_name", "-")
-    notes = ("U95: half-width.", "no table: No table varies this motion.")
+    notes = ("U95: half-width.",)
     rows = (("Yv'", *row), ("Zw'", *none), ("Mw'", *none))
-    monkeypatch.setattr(
-        results,
-        "coefficients",
-        lambda study: Table("Coefficients, primed", headers, rows, notes, frozenset({0, 7, 9, 10})),
-    )
-    shown = results.coefficients_in(None)  # type: ignore[arg-type]
+
+    def built(study: object, chosen: list[Coefficient]) -> Table:
+        of = {c.symbol for c in chosen}
+        these = tuple(r for r in rows if r[0].removesuffix("'") in of)
+        return Table("Coefficients, primed", headers, these, notes, frozenset({0, 7, 9, 10}))
+
+    monkeypatch.setattr(results, "_coefficients", built)
+    absent = [Coefficient(s, None, None, Status.NO_TABLE) for s in ("Zw", "Mw")]
+    study = SimpleNamespace(coefficients=[Coefficient("Yv", -0.0262, 0.0027, Status.OK), *absent])
+    shown = results.coefficients_in(study)  # type: ignore[arg-type]
     assert shown.title == "Coefficients of tank_of_a_long_name, primed"
     assert shown.rows == (("Yv'", *row[:5], row[6], row[7]),)
     assert shown.notes == (
         "U95: half-width.", "No table of the campaign varies the motion of Zw', Mw'.", "Not shown: estimator, campaign, input; --wide shows all.",
     )  # fmt: skip
     assert max(map(len, plain_lines(shown))) <= 80
-    assert results.coefficients_in(None, 200).headers == headers  # type: ignore[arg-type]
-    rows = (("Zw'", *none),)
-    assert results.coefficients_in(None).rows[0][:2] == ("Zw'", "no table")  # type: ignore[arg-type]
+    assert results.coefficients_in(study, 200).headers == headers  # type: ignore[arg-type]
+    study.coefficients = absent
+    assert results.coefficients_in(study).rows[0][:2] == ("Zw'", "no table")  # type: ignore[arg-type]
 
 
 SLOPE = Coefficient("Yv", -0.02, 0.002, Status.OK, parts=Parts(0.001, 0.0017), origin="fit")

@@ -45,7 +45,7 @@ def write_imperial(folder: Path, at: float) -> Path:
         rate, y, n = (float(r[k]) for k in ("r [rad/s]", "Y [N]", "N [N*m]"))
         n -= shift * y
         v = rate * shift
-        cells = (2.0 / FOOT, v / FOOT, -np.degrees(rate), -2.0 / FOOT, y / POUND, -n / POUND / FOOT)
+        cells = (np.hypot(2.0, v) / FOOT, v / FOOT, -np.degrees(rate), -2.0 / FOOT, y / POUND, -n / POUND / FOOT)
         arm.append(r["point"] + "," + ",".join(repr(float(c)) for c in cells))
     (folder / "campaign" / "drift.csv").write_text("\n".join(drift) + "\n")
     (folder / "campaign" / "rotating_arm.csv").write_text("\n".join(arm) + "\n")
